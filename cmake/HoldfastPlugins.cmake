@@ -35,6 +35,7 @@ set(HOLDFAST_PLUGIN_TABLE
   "loop_detector   flann                 loop_detectors/flann"
   "loop_detector   global                loop_detectors/global"
   "observers       class_motion          observers/class_motion"
+  "observers       foxglove              observers/foxglove"
   "observers       health                observers/health"
   "observers       mcap                  observers/mcap"
   "observers       objects               observers/objects"
@@ -68,6 +69,7 @@ endfunction()
 
 find_path(HOLDFAST_BOOST_INCLUDE_DIR boost/beast/version.hpp)
 holdfast_plugin_needs(viewer "Boost.Beast was not found" libboost-dev HOLDFAST_BOOST_INCLUDE_DIR)
+holdfast_plugin_needs(foxglove "Boost.Beast was not found" libboost-dev HOLDFAST_BOOST_INCLUDE_DIR)
 find_path(HOLDFAST_LZ4_INCLUDE_DIR lz4frame.h)
 find_library(HOLDFAST_LZ4_LIBRARY lz4)
 find_path(HOLDFAST_BZ2_INCLUDE_DIR bzlib.h)

@@ -33,16 +33,34 @@ Eigen::Isometry3d ahead_camera() {
   return T_base_camera;
 }
 
+/// Throws for numbers that cannot be.
+const Parameters& checked(const Parameters& given) {
+  const auto refuse = [](const char* name, double value, const char* expected) {
+    throw InputError({std::string("parameter '") + name + "'"},
+                     "found " + std::to_string(value) + "; expected " + expected);
+  };
+  constexpr double longest = 1e6;  // s
+  if (!(given.tolerance >= 0.0 && given.tolerance <= longest)) refuse("tolerance", given.tolerance, "0 s or more");
+  if (!(given.depth_factor >= 1e-3 && given.depth_factor <= 1e6))
+    refuse("depth_factor", given.depth_factor, "the value of one metre in depth images, such as 1000");
+  if (given.queue < 1) refuse("queue", given.queue, "1 frame or more");
+  if (!(given.map_interval > 0.0 && given.map_interval <= longest))
+    refuse("map_interval", given.map_interval, "more than 0 s");
+  if (!(given.grid_interval > 0.0 && given.grid_interval <= longest))
+    refuse("grid_interval", given.grid_interval, "more than 0 s");
+  return given;
+}
+
 }  // namespace
 
 /// The members above the threads are used by several of them: those with a mutex beside them are guarded by it.
 struct Bridge::State {
   State(const Parameters& given, Listener& to_tell)
-      : parameters(given),
+      : parameters(checked(given)),
         listener(to_tell),
         configuration(read_bridge_configuration(parameters, registry)),
         pairing(given.has_depth, given.has_right, static_cast<Stamp>(1e9 * given.tolerance)),
-        frames(given.is_sequential ? 0 : static_cast<std::size_t>(std::max(given.queue, 1))),
+        frames(given.is_sequential ? 0 : static_cast<std::size_t>(given.queue)),
         map_file(given.map_file),
         localise_only(given.localise_only) {
     if (!map_file.empty()) read_map(map_file);  // throws for one that cannot be used

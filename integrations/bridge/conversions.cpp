@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/sensor_frame.hpp"
+#include "holdfast/image_files/ros_encodings.hpp"
 
 namespace holdfast::bridge {
 
@@ -19,44 +19,32 @@ constexpr std::uint32_t largest_side = 1U << 15;
 
 [[noreturn]] void refuse(const char* what, const std::string& problem) { throw InputError({what}, problem); }
 
-struct Encoding {
-  const char* name;
-  int type, conversion;  // -1: none
-};
-constexpr Encoding colour_encodings[] = {
-    {"rgb8", CV_8UC3, cv::COLOR_RGB2BGR},
-    {"bgr8", CV_8UC3, -1},
-    {"8UC3", CV_8UC3, -1},
-    {"rgba8", CV_8UC4, cv::COLOR_RGBA2BGR},
-    {"bgra8", CV_8UC4, cv::COLOR_BGRA2BGR},
-    {"mono8", CV_8UC1, cv::COLOR_GRAY2BGR},
-    {"8UC1", CV_8UC1, cv::COLOR_GRAY2BGR},
-};
-constexpr Encoding depth_encodings[] = {{"16UC1", CV_16UC1, -1}, {"mono16", CV_16UC1, -1}, {"32FC1", CV_32FC1, -1}};
+[[noreturn]] void refuse_encoding(const char* what, const std::string& encoding, const std::string& known) {
+  refuse(what, "has the encoding '" + encoding + "'; expected one of " + known +
+                   "; choose another topic, or convert it with image_proc");
+}
+
+/// The type of OpenCV of an encoding of depth.
+int depth_type(const char* what, const std::string& encoding) {
+  if (encoding == "16UC1" || encoding == "mono16") return CV_16UC1;
+  if (encoding == "32FC1") return CV_32FC1;
+  refuse_encoding(what, encoding, "16UC1, mono16, 32FC1");
+}
 
 /// The pixels of a message without a copy.
-template <std::size_t count>
-cv::Mat view_of(const RawImage& image, const char* what, const Encoding (&encodings)[count], int& conversion) {
+cv::Mat view_of(const RawImage& image, const char* what, int type) {
   if (image.width < 1 || image.height < 1 || image.width > largest_side || image.height > largest_side)
     refuse(what, "has " + std::to_string(image.width) + "x" + std::to_string(image.height) + " pixels; expected 1 to " +
                      std::to_string(largest_side) + " in width and height");
-  std::string known;
-  for (const Encoding& encoding : encodings) {
-    known += (known.empty() ? "" : ", ") + std::string(encoding.name);
-    if (image.encoding != encoding.name) continue;
-    const std::size_t row = image.width * CV_ELEM_SIZE(encoding.type);
-    if (image.step < row || image.size < image.step * (image.height - 1) + row)
-      refuse(what, "has " + std::to_string(image.size) + " bytes in rows of " + std::to_string(image.step) +
-                       "; an image of " + std::to_string(image.width) + "x" + std::to_string(image.height) + ", " +
-                       image.encoding + " has rows of " + std::to_string(row));
-    if (image.is_big_endian && CV_ELEM_SIZE1(encoding.type) > 1)
-      refuse(what, "has its bytes in the order of another processor; expected little-endian numbers");
-    conversion = encoding.conversion;
-    return {static_cast<int>(image.height), static_cast<int>(image.width), encoding.type,
-            const_cast<std::uint8_t*>(image.data), image.step};
-  }
-  refuse(what, "has the encoding '" + image.encoding + "'; expected one of " + known +
-                   "; choose another topic, or convert it with image_proc");
+  const std::size_t row = image.width * CV_ELEM_SIZE(type);
+  if (image.step < row || image.size < image.step * (image.height - 1) + row)
+    refuse(what, "has " + std::to_string(image.size) + " bytes in rows of " + std::to_string(image.step) +
+                     "; an image of " + std::to_string(image.width) + "x" + std::to_string(image.height) + ", " +
+                     image.encoding + " has rows of " + std::to_string(row));
+  if (image.is_big_endian && CV_ELEM_SIZE1(type) > 1)
+    refuse(what, "has its bytes in the order of another processor; expected little-endian numbers");
+  return {static_cast<int>(image.height), static_cast<int>(image.width), type, const_cast<std::uint8_t*>(image.data),
+          image.step};
 }
 
 cv::Mat metres_of(const cv::Mat& view, double factor) {
@@ -100,12 +88,10 @@ Distortion distortion_of(const CameraInfo& info) {
 }  // namespace
 
 cv::Mat colour_of(const RawImage& image) {
-  int conversion = -1;
-  const cv::Mat view = view_of(image, "colour image", colour_encodings, conversion);
-  if (conversion < 0) return view.clone();
-  cv::Mat converted;
-  cv::cvtColor(view, converted, conversion);
-  return converted;
+  constexpr const char* what = "colour image";
+  const RosColourEncoding* encoding = find_ros_colour_encoding(image.encoding);
+  if (encoding == nullptr) refuse_encoding(what, image.encoding, ros_colour_encodings());
+  return to_blue_green_red(view_of(image, what, encoding->type), *encoding);
 }
 
 cv::Mat colour_of(const CompressedImage& image) {
@@ -113,8 +99,8 @@ cv::Mat colour_of(const CompressedImage& image) {
 }
 
 cv::Mat depth_of(const RawImage& image, double factor) {
-  int conversion = -1;
-  return metres_of(view_of(image, "depth image", depth_encodings, conversion), factor);
+  constexpr const char* what = "depth image";
+  return metres_of(view_of(image, what, depth_type(what, image.encoding)), factor);
 }
 
 cv::Mat depth_of(const CompressedImage& image, double factor) {

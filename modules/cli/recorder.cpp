@@ -7,35 +7,18 @@
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/trajectory.hpp"
-#include "holdfast/perturbation/perturbed_source.hpp"
+#include "recorded_configuration.hpp"
 
 namespace holdfast {
 
 namespace {
 
-constexpr const char* configuration_file = "recording.yaml";
+constexpr const char* recording_file = "recording.yaml";
 
-/// The configuration with the recording in the place of its source. Paths are relative, so that the folder can be
-/// moved.
 Configuration on_recording(const Configuration& original, const Registry& registry, const SourceDescription& source) {
-  Configuration result = original;
-  const auto perturbation = section_settings<PerturbationSettings>(original, "perturbation");
-  result.sections.erase("perturbation");  // the recorded frames and the camera below have it already
-  result.source = {.kind = FrameSource::kind, .name = "tum", .values = {}, .location = {configuration_file}};
-  const ModuleEntry* tum = registry.find(result.source.kind, result.source.name);
-  if (tum == nullptr) throw PluginError("a recording is read by the source 'tum', which these modules do not contain");
-  for (const Parameter& parameter : tum->parameters) result.source.values[parameter.name] = parameter.default_value;
+  Configuration result = recorded_configuration(original, registry, source, "tum");
   result.source.values["path"] = std::string(".");
   result.source.values["associations"] = std::string("associations.txt");
-  // The recorded measurements are by the clock of the camera, and the camera is that of the recorded frames.
-  result.imu = source.imu ? source.imu : original.imu;
-  if (result.imu) result.imu->time_offset = 0.0;
-  const bool source_precedes = original.unknown_camera.has_value();
-  if (original.camera && !(source_precedes && source.camera))
-    result.camera = perturbed_camera(*original.camera, perturbation, original.run.seed);
-  else
-    result.camera = source.camera;
-  result.unknown_camera.reset();
   return result;
 }
 
@@ -82,7 +65,7 @@ class RecordedSource final : public FrameSource {
 
 std::vector<std::string> Recorder::entries() {
   std::vector<std::string> names = RecordingWriter::entries();
-  names.emplace_back(configuration_file);
+  names.emplace_back(recording_file);
   return names;
 }
 
@@ -93,6 +76,8 @@ Recorder::Recorder(const Configuration& configuration, const Registry& registry,
       lock_(prepare_output_folder(folder_, overwrite, entries())),
       writer_(folder_,
               {.depth_factors = depth_factors(configuration), .has_global_shutter = source.has_global_shutter}) {}
+
+std::filesystem::path Recorder::configuration_file() const { return folder_ / recording_file; }
 
 SensorFrame Recorder::record(const SensorFrame& frame) {
   if (frame.depth.empty() || frame.colour.empty())
@@ -106,7 +91,7 @@ SensorFrame Recorder::record(const SensorFrame& frame) {
 void Recorder::finish(const Trajectory& truth) {
   writer_.finish(truth);
   configuration_.source.values["depth_factor"] = writer_.depth_factor();
-  write_file_atomically(folder_ / configuration_file, to_yaml(configuration_));
+  write_file_atomically(configuration_file(), to_yaml(configuration_));
 }
 
 std::string Recorder::losses() const {

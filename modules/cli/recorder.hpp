@@ -29,7 +29,11 @@ class Recorder {
   /// What the recording lost of the frames, for people; empty if it has all.
   std::string losses() const;
   std::uint64_t frame_count() const { return writer_.frame_count(); }
-  const std::filesystem::path& folder() const { return folder_; }
+  /// The folder, and the file in it that a run on the recording needs.
+  /// @{
+  const std::filesystem::path& target() const { return folder_; }
+  std::filesystem::path configuration_file() const;
+  /// @}
 
   /// What a recording consists of, lists first.
   static std::vector<std::string> entries();

@@ -107,7 +107,7 @@ RunOptions options_of(const RunArguments& arguments, const Registry& registry, c
     write_file_atomically(arguments.output / "config.yaml", to_yaml(record.configuration));
     running.journal.emplace(arguments.output);
     running.viewers = running_viewers_of_program();
-    print_addresses(running.viewers);
+    print_server_addresses();
     print_new_warnings(record.warnings, running);
     running.progress.emplace(record.source.frame_count, arguments.quiet);
   };

@@ -1,46 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/viewer/viewer.hpp"
 
-#include <sys/random.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cerrno>
-#include <cstdio>
 #include <mutex>
 #include <optional>
 
 #include "holdfast/core/embedded_page.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/stage_times.hpp"
+#include "holdfast/web_server/socket_server.hpp"
 #include "play_control.hpp"
 #include "scene.hpp"
-#include "server.hpp"
 
 namespace holdfast {
 
 std::span<const EmbeddedFile> embedded_viewer_page();
 
 namespace {
-
-/// Not of the run's seed: nobody shall be able to guess it.
-std::string random_token() {
-  std::array<unsigned char, 16> bytes{};
-  std::size_t filled = 0;
-  while (filled < bytes.size()) {
-    const ssize_t count = getrandom(bytes.data() + filled, bytes.size() - filled, 0);
-    if (count < 0 && errno != EINTR) throw Error("the viewer cannot make a token: the system gives no random numbers");
-    if (count > 0) filled += static_cast<std::size_t>(count);
-  }
-  std::string token;
-  for (const unsigned char byte : bytes) {
-    char digits[3];
-    std::snprintf(digits, sizeof(digits), "%02x", byte);
-    token += digits;
-  }
-  return token;
-}
 
 /// Since the clock of the machine began [s].
 double now() {
@@ -67,24 +45,34 @@ struct Mailbox {
   std::optional<ViewedRun> run;
 };
 
+namespace {
+
+/// How many messages per second a browser gets at most, unless it asks for fewer.
+constexpr double fastest_rate = 30.0;
+
+}  // namespace
+
 struct Viewer::State {
+  class Browser;
   explicit State(const ViewerOptions& given)
       : options(given),
         control(given.speed),
         scene(given),
-        server(given.listen, given.port, random_token(), embedded_page(embedded_viewer_page(), "viewer.html"),
-               {.tick = [this] { take_mail(); },
-                .update = [this](viewer::Progress& progress) { return scene.update(progress); },
-                .command = [this](std::string_view text) { return obey(text); },
-                .watched =
-                    [this](int count, double fastest) {
-                      if (count > 0) rate = fastest;
-                      control.set_watchers(count);
-                    }}) {}
+        server({.name = "viewer",
+                .listen = given.listen,
+                .port = given.port,
+                .token = random_token(),
+                .page = embedded_page(embedded_viewer_page(), "viewer.html"),
+                .socket_path = "/socket",
+                .is_paced = true},
+               {.tick = [this] { take_mail(); }, .open = [this] { return open(); }}) {}
   ~State() { control.close(); }
 
   void take_mail();
   bool obey(std::string_view text);
+  std::unique_ptr<SocketClient> open();
+  /// After the number of browsers has changed, or the rate of one.
+  void count_browsers();
 
   ViewerOptions options;
   viewer::PlayControl control;
@@ -93,10 +81,75 @@ struct Viewer::State {
   std::atomic<bool> has_picture = false, has_map = false, has_patches = false;
   std::atomic<double> last_picture = -1e9, last_map = 0.0, map_cost = -1.0, last_patches = -1e9, patches_cost = 0.0;
   std::atomic<int> patch_coarseness = 0;
-  std::atomic<double> rate = viewer::Server::fastest_rate;  // of messages, of the browser that wants most
-  viewer::Scene scene;                                      // of the server's thread
-  viewer::Server server;                                    // last: its thread uses everything above
+  std::atomic<double> rate = fastest_rate;  // of messages, of the browser that wants most
+  viewer::Scene scene;                      // of the server's thread
+  std::vector<const Browser*> browsers;     // the same
+  SocketServer server;                      // last: its thread uses everything above
 };
+
+namespace {
+
+/// The rate that a message asks for, nothing if it is no such message.
+std::optional<double> asked_rate(std::string_view text) {
+  constexpr std::array<std::pair<std::string_view, double>, 6> rates{{{"rate 0", 0.0},
+                                                                      {"rate 1", 1.0},
+                                                                      {"rate 2", 2.0},
+                                                                      {"rate 5", 5.0},
+                                                                      {"rate 10", 10.0},
+                                                                      {"rate 30", fastest_rate}}};
+  for (const auto& [name, rate] : rates)
+    if (name == text) return rate;
+  return std::nullopt;
+}
+
+}  // namespace
+
+class Viewer::State::Browser final : public SocketClient {
+ public:
+  explicit Browser(Viewer::State& viewer) : viewer_(viewer) {
+    viewer_.browsers.push_back(this);
+    viewer_.count_browsers();
+  }
+  ~Browser() override {
+    std::erase(viewer_.browsers, this);
+    viewer_.count_browsers();
+  }
+  Browser(const Browser&) = delete;
+  Browser& operator=(const Browser&) = delete;
+
+  /// What the browser lacks, unless it has asked for fewer messages.
+  std::optional<SocketMessage> next() override {
+    if (last_sent_ && rate_ < fastest_rate && (now() - *last_sent_) * rate_ < 1.0) return std::nullopt;
+    std::string bytes = viewer_.scene.update(progress_);
+    if (bytes.empty()) return std::nullopt;
+    last_sent_ = now();
+    return SocketMessage{std::move(bytes), false};
+  }
+  bool receive(std::string_view message, bool is_text) override {
+    if (!is_text) return false;
+    const std::optional<double> rate = asked_rate(message);
+    if (!rate) return viewer_.obey(message);
+    rate_ = *rate;
+    viewer_.count_browsers();
+    return true;
+  }
+  double rate() const { return rate_; }
+
+ private:
+  Viewer::State& viewer_;
+  viewer::Progress progress_;
+  double rate_ = fastest_rate;  // most messages per second
+  std::optional<double> last_sent_;
+};
+
+std::unique_ptr<SocketClient> Viewer::State::open() { return std::make_unique<Browser>(*this); }
+
+void Viewer::State::count_browsers() {
+  double fastest = 0.0;
+  for (const Browser* browser : browsers) fastest = std::max(fastest, browser->rate());
+  if (!browsers.empty()) rate = fastest;
+  control.set_watchers(static_cast<int>(browsers.size()));
+}
 
 void Viewer::State::take_mail() {
   Mailbox mail;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/bridge/bridge.hpp"
+#include "holdfast/bridge/node_parameters.hpp"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -231,6 +232,67 @@ TEST_F(BridgeTest, BeginsWithAMapOfAFile) {
             0.02);
   p.map_file = file("nothing.hfm");
   EXPECT_THROW(Bridge(p, continued), InputError);
+}
+
+// Descriptors of another kind cannot be matched: an operator must see it, and not a robot that stays lost.
+TEST_F(BridgeTest, AMapOfAnotherExtractorIsAnError) {
+  {
+    Bridge bridge(parameters(), recorder_);
+    bridge.set_camera(office_camera());
+    feed(bridge, 0, 10);
+    bridge.save_map(file("map.hfm"));
+  }
+  Parameters p = parameters();
+  p.map_file = file("map.hfm");
+  p.localise_only = true;
+  p.overrides = {"features=akaze"};
+  Recorder other;
+  Bridge bridge(p, other);
+  bridge.set_camera(office_camera());
+  feed(bridge, 0, 3);
+  const Diagnostics diagnosis = bridge.diagnostics();
+  EXPECT_EQ(diagnosis.level, Diagnostics::Level::error);
+  EXPECT_THAT(diagnosis.message, HasSubstr("akaze"));
+  EXPECT_THAT(diagnosis.message, HasSubstr("orb"));
+}
+
+TEST_F(BridgeTest, NumbersThatCannotBeAreNamed) {
+  const auto refused = [&](const char* name, const auto& change) {
+    Parameters p = parameters();
+    change(p);
+    try {
+      Bridge bridge(p, recorder_);
+      ADD_FAILURE() << name << " was accepted";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(std::string("parameter '") + name + "': found "));
+    }
+  };
+  for (const double value : {0.0, -1.0, std::nan("")}) {
+    refused("map_interval", [=](Parameters& p) { p.map_interval = value; });
+    refused("grid_interval", [=](Parameters& p) { p.grid_interval = value; });
+    refused("depth_factor", [=](Parameters& p) { p.depth_factor = value; });
+  }
+  refused("tolerance", [](Parameters& p) { p.tolerance = -0.01; });
+  refused("queue", [](Parameters& p) { p.queue = 0; });
+}
+
+TEST_F(BridgeTest, ParametersOfANodeFitTogether) {
+  NodeParameters given;
+  EXPECT_THROW(resolved(given), std::runtime_error) << "no configuration";
+  given.bridge.configuration = "pipeline.yaml";
+  given.bridge.map_file = "map.hfm";
+  EXPECT_EQ(resolved(given).bridge.map_file, "") << "only services use it";
+  EXPECT_THAT(resolved(given).bridge.overrides, testing::ElementsAre("surface.enabled=true"));
+  given.start = "localise";
+  EXPECT_TRUE(resolved(given).bridge.localise_only);
+  EXPECT_EQ(resolved(given).bridge.map_file, "map.hfm");
+  given.bridge.map_file.clear();
+  EXPECT_THROW(resolved(given), std::runtime_error);
+  given.start = "now";
+  EXPECT_THROW(resolved(given), std::runtime_error);
+  given.start = "new";
+  given.transform_wait = -1.0;
+  EXPECT_THROW(resolved(given), std::runtime_error);
 }
 
 TEST_F(BridgeTest, ResetBeginsANewMapAndPauseLeavesFramesOut) {

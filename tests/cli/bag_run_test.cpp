@@ -69,5 +69,37 @@ TEST(BagRunTest, ARunOnABagIsTheRunOnTheFolder) {
   EXPECT_EQ(program.text("out_again/trajectory.txt"), program.text("out_folder/trajectory.txt"));
 }
 
+// The folder has depth in a fifth of a millimetre, which a bag has as 32FC1, and a global shutter.
+TEST(BagRunTest, ARunOnARecordedBagIsTheRunOnItsSource) {
+  const test::Program program;
+  const auto run = [&](const std::vector<std::string>& words) {
+    const test::Outcome outcome = program.run(words);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  };
+  run({"simulate", "--duration", "0.4", "--output", "folder", "--quiet"});
+  program.write("folder.yaml",
+                "source: { tum: { path: folder, associations: folder/associations.txt } }\ncamera: tum_fr1\n"
+                "features: orb\noptimizer: schur\nfilters: [multi_view_depth]\n");
+  run({"record", "folder.yaml", "--bag", "recording.mcap", "--quiet"});
+  run({"run", "folder.yaml", "--output", "out_folder", "--quiet"});
+  // With what lies beside it, the bag can be moved.
+  std::filesystem::create_directory(program.path("elsewhere"));
+  for (const char* name : {"recording.mcap", "recording.yaml", "recording.truth.txt"})
+    std::filesystem::rename(program.path(name), program.path(std::string("elsewhere/") + name));
+  run({"run", "elsewhere/recording.yaml", "--output", "out_bag", "--quiet"});
+  EXPECT_FALSE(program.text("out_bag/trajectory.txt").empty());
+  EXPECT_EQ(program.text("out_bag/trajectory.txt"), program.text("out_folder/trajectory.txt"));
+  EXPECT_EQ(program.text("out_bag/map.hfm"), program.text("out_folder/map.hfm"));
+  EXPECT_EQ(program.text("out_bag/evaluation.json").empty(), program.text("out_folder/evaluation.json").empty());
+  EXPECT_FALSE(program.text("out_bag/evaluation.json").empty());
+
+  const test::Outcome again = program.run({"record", "folder.yaml", "--bag", "elsewhere/recording.mcap"});
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_THAT(again.errors, testing::HasSubstr("recording.mcap: is there already"));
+  EXPECT_EQ(program.run({"record", "folder.yaml"}).exit_code, 2);
+  EXPECT_THAT(program.run({"record", "folder.yaml", "--bag", "recording.bag"}).errors,
+              testing::HasSubstr("expected a name that ends with .mcap"));
+}
+
 }  // namespace
 }  // namespace holdfast

@@ -3,10 +3,19 @@
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
 set(build ${WORK_FOLDER}/installed)
-configure(${CMAKE_CURRENT_LIST_DIR}/installed ${build} -DCMAKE_PREFIX_PATH=${WORK_FOLDER}/moved)
+file(GLOB_RECURSE bridge ${WORK_FOLDER}/moved/*/libholdfast_bridge.*)
+set(with_bridge OFF)
+if(bridge)
+  set(with_bridge ON)
+endif()
+configure(${CMAKE_CURRENT_LIST_DIR}/installed ${build} -DCMAKE_PREFIX_PATH=${WORK_FOLDER}/moved
+          -DWITH_BRIDGE=${with_bridge})
 run(COMMAND ${CMAKE_COMMAND} --build ${build})
 run(COMMAND ${build}/consumer)
 run(COMMAND ${build}/geometry_consumer)
+if(bridge)
+  run(COMMAND ${CMAKE_COMMAND} -E chdir ${build} ./bridge_consumer)
+endif()
 check_libraries(${build}/consumer)
 
 if(EXISTS ${BUILD_FOLDER}/bin/holdfast)

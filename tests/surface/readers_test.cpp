@@ -6,17 +6,15 @@
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
-#include <sstream>
 
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/surface/free_space.hpp"
 #include "holdfast/surface/mesh_files.hpp"
+#include "support/npm_tools.hpp"
 #ifdef HOLDFAST_TEST_WITH_ASSIMP
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -105,23 +103,10 @@ TEST_F(SurfaceReadersTest, AssimpReadsEveryFormatOfMeshes) {
 }
 #endif
 
-/// Runs a command in a folder; its output, or nothing if it fails.
-std::optional<std::string> output_of(const fs::path& folder, const std::string& command, const fs::path& out) {
-  const std::string all = "cd '" + folder.string() + "' && timeout 120 " + command + " >'" + out.string() + "' 2>&1";
-  if (std::system(all.c_str()) != 0) return std::nullopt;
-  std::ostringstream text;
-  text << std::ifstream(out).rdbuf();
-  return text.str();
-}
-
 TEST_F(SurfaceReadersTest, TheValidatorOfKhronosFindsNothingWrongWithGlb) {
-  const fs::path tools = HOLDFAST_TEST_NPM_FOLDER;
-  fs::create_directories(tools);
-  const auto run = [&](const std::string& command) { return output_of(tools, command, folder_ / "output"); };
-  if (!run("node --version")) GTEST_SKIP() << "no node to run the validator with";
-  if (!fs::exists(tools / "node_modules/gltf-validator") &&
-      !run("npm install --no-audit --no-fund --prefix . gltf-validator@2.0.0-dev.3.10"))
-    GTEST_SKIP() << "npm cannot install gltf-validator; is there npm, and a network?";
+  const test::NpmTools tools(HOLDFAST_TEST_NPM_FOLDER, {"gltf-validator@2.0.0-dev.3.10"});
+  if (!tools.trouble().empty()) GTEST_SKIP() << tools.trouble();
+  const auto run = [&](const std::string& command) { return tools.run(command, folder_ / "output"); };
   const std::optional<std::string> said = run("node '" HOLDFAST_TEST_VALIDATOR "' '" + write("glb").string() + "'");
   ASSERT_TRUE(said);
   const nlohmann::json report = nlohmann::json::parse(*said);

@@ -58,7 +58,8 @@ class Listener {
 /// Functions may be called by any thread. Errors are exceptions (std::exception) with the cause and the remedy.
 class Bridge {
  public:
-  /// Throws ConfigurationError with all errors of the configuration, and InputError for an unusable map. The listener
+  /// Throws ConfigurationError with all errors of the configuration, and InputError for an unusable map or a parameter
+  /// that cannot be, such as a depth factor of 0. The listener
   /// must outlive the bridge.
   Bridge(const Parameters& parameters, Listener& listener);
   /// Discards frames that wait.

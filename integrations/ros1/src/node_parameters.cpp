@@ -3,6 +3,7 @@
 
 #include <set>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace holdfast_ros {
@@ -28,9 +29,7 @@ class Reader {
     const std::string beginning = node_.getNamespace() + "/";
     for (const std::string& name : names)
       if (name.compare(0, beginning.size(), beginning) == 0 && known_.count(name) == 0)
-        throw std::runtime_error("there is no parameter '" + name.substr(beginning.size()) +
-                                 "'; README.md of integrations/ros1 lists all; those of the pipeline are set by `set`, "
-                                 "such as set: [tracking.minimum_inliers=15]");
+        throw holdfast::bridge::unknown_parameter(name.substr(beginning.size()), "ros1");
   }
 
  private:
@@ -41,44 +40,11 @@ class Reader {
 }  // namespace
 
 NodeParameters read_parameters(const ros::NodeHandle& node) {
-  NodeParameters p;
+  NodeParameters parameters;
   Reader reader(node);
-  std::string start = "new";
-  bool has_grid = true;
-  reader.read("configuration", p.bridge.configuration);
-  reader.read("set", p.bridge.overrides);
-  reader.read("depth", p.bridge.has_depth);
-  reader.read("stereo", p.bridge.has_right);
-  reader.read("rectified", p.bridge.is_rectified);
-  reader.read("compressed", p.is_compressed);
-  reader.read("grid", has_grid);
-  reader.read("tolerance", p.bridge.tolerance);
-  reader.read("depth_factor", p.bridge.depth_factor);
-  reader.read("queue", p.bridge.queue);
-  reader.read("map_interval", p.bridge.map_interval);
-  reader.read("grid_interval", p.bridge.grid_interval);
-  reader.read("map_file", p.bridge.map_file);
-  reader.read("start", start);
-  reader.read("map_frame", p.map_frame);
-  reader.read("odom_frame", p.odom_frame);
-  reader.read("base_frame", p.base_frame);
-  reader.read("camera_frame", p.camera_frame);
-  reader.read("publish_tf", p.publishes_tf);
-  reader.read("external_odometry", p.has_external_odometry);
-  reader.read("transform_tolerance", p.transform_tolerance);
-  reader.read("transform_wait", p.transform_wait);
+  holdfast::bridge::visit_parameters(parameters, [&](const char* name, auto& value) { reader.read(name, value); });
   reader.refuse_unknown();
-  if (has_grid) p.bridge.overrides.insert(p.bridge.overrides.begin(), "surface.enabled=true");
-  if (p.bridge.configuration.empty())
-    throw std::runtime_error("parameter 'configuration' is missing; expected the YAML file of a pipeline");
-  if (start != "new" && start != "continue" && start != "localise")
-    throw std::runtime_error("found '" + start + "' for 'start'; expected new, continue or localise");
-  p.bridge.localise_only = start == "localise";
-  if (start == "new")
-    p.bridge.map_file.clear();
-  else if (p.bridge.map_file.empty())
-    throw std::runtime_error("'start' is '" + start + "' without 'map_file'; expected the file of a map");
-  return p;
+  return holdfast::bridge::resolved(std::move(parameters));
 }
 
 std::string map_file_of(const ros::NodeHandle& node) {

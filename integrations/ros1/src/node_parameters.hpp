@@ -5,24 +5,14 @@
 
 #include <string>
 
-#include "holdfast/bridge/bridge.hpp"
+#include "holdfast/bridge/node_parameters.hpp"
 
 namespace holdfast_ros {
 
-/// Private parameters of the node; README.md describes them.
-struct NodeParameters {
-  holdfast::bridge::Parameters bridge;
-  std::string map_frame = "map", odom_frame = "odom", base_frame = "base_link";
-  std::string camera_frame;  ///< empty = that of the colour images
-  bool publishes_tf = true;
-  bool has_external_odometry = false;  ///< `odom` to `base_link` comes by tf
-  double transform_tolerance = 0.1;    ///< with external odometry: `map` to `odom` holds so long ahead [s]
-  double transform_wait = 1.0;         ///< for the pose of the camera on the robot [s]
-  bool is_compressed = false;
-};
+using holdfast::bridge::NodeParameters;
 
-/// Reads the parameters; those that are not set keep their defaults. Throws std::runtime_error for an unknown name or a
-/// value of the wrong type.
+/// Reads the private parameters; those that are not set keep their defaults. Throws std::runtime_error for an unknown
+/// name, a value of the wrong type, and one that cannot be.
 NodeParameters read_parameters(const ros::NodeHandle& node);
 
 /// `map_file` as it is set now, for services.

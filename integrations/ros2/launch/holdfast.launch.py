@@ -16,6 +16,7 @@ TOPICS = {
     "camera_info": "/camera/camera/color/camera_info",
     "imu": "/camera/camera/imu",
 }
+COMPRESSED = {"colour": "/compressed", "depth": "/compressedDepth"}
 
 
 def generate_launch_description():
@@ -24,6 +25,7 @@ def generate_launch_description():
         **TOPICS,
         "configuration": PathJoinSubstitution([share, "config", "robot.yaml"]),
         "set": "['']",  # settings of the pipeline, such as "['camera=tum_fr1']"
+        "compressed": "false",  # colour/compressed and depth/compressedDepth in place of raw images
         "map_file": "",
         "start": "new",
         "bag": "",
@@ -35,10 +37,12 @@ def generate_launch_description():
         plugin="holdfast_ros::HoldfastNode",
         name="holdfast",
         parameters=[
-            {name: LaunchConfiguration(name) for name in ("configuration", "set", "map_file", "start")},
+            {name: LaunchConfiguration(name) for name in ("configuration", "set", "compressed", "map_file", "start")},
             {"use_sim_time": plays},
         ],
-        remappings=[(name, LaunchConfiguration(name)) for name in TOPICS] + [("~/map", "/map")],
+        remappings=[(name, LaunchConfiguration(name)) for name in TOPICS]
+        + [(name + transport, [LaunchConfiguration(name), transport]) for name, transport in COMPRESSED.items()]
+        + [("~/map", "/map")],
         # Images of a camera in the same container are handed over without a copy.
         extra_arguments=[{"use_intra_process_comms": True}],
     )

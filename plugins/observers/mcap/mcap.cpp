@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <mutex>
 #include <optional>
 
 #include "holdfast/interfaces/observer.hpp"
+#include "holdfast/mcap/mcap_writer.hpp"
+#include "holdfast/mcap/run_messages.hpp"
 #include "holdfast/plugin/plugin.hpp"
 #include "holdfast/settings/mcap.hpp"
-#include "mcap_writer.hpp"
-#include "messages.hpp"
 
 namespace holdfast {
 
@@ -30,54 +28,35 @@ void McapSettings::describe(ParameterTable<McapSettings>& table) {
 
 namespace {
 
-using namespace mcap_plugin;
-
-/// The axes of `map` in terms of those of `world`: x forwards, y left, z up.
-Eigen::Isometry3d T_map_world() {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  return T;
-}
-
 /// Writes what a run finds to run.mcap. Needs an output folder, and does nothing without one. The tracking and the
 /// mapping thread share the file.
 class Mcap final : public Observer {
  public:
   Mcap(const McapSettings& settings, const CreationContext& context)
-      : settings_(settings), folder_(context.output_directory) {}
+      : settings_(settings), folder_(context.output_directory), camera_(context.camera) {}
 
   void on_frame(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result) override {
     if (folder_.empty()) return;
     const std::lock_guard lock(mutex_);
-    if (!writer_) open();
-    const double time = time_ = result.timestamp;
-    write(status_, status_message(result));
-    write(transforms_, transform_message(time, map_frame, world_frame, T_map_world()));
-    if (result.T_world_camera) {
-      write(pose_, pose_message(time, *result.T_world_camera));
-      write(transforms_, transform_message(time, world_frame, camera_frame, *result.T_world_camera));
-    }
-    if (!result.objects.empty()) write(objects_, objects_message(time, result.objects));
-    if (settings_.image_every == 0 || sensor_frame.index % static_cast<std::uint64_t>(settings_.image_every) != 0)
-      return;
-    if (!sensor_frame.colour.empty()) write(image_, image_message(time, sensor_frame.colour, settings_.quality));
-    if (frame.coarse.grid.size() > 0) write(moving_, moving_message(time, frame.coarse));
+    if (!messages_) open();
+    messages_->add_frame(sensor_frame, frame, result);
   }
 
   void on_keyframe(KeyFrameId, const ObservedMap& map) override {
     {
       const std::lock_guard lock(mutex_);
-      if (!writer_ || time_ < map_time_ + settings_.map_interval) return;
-      map_time_ = time_;
+      if (!messages_ || messages_->time() < map_time_ + settings_.map_interval) return;
+      map_time_ = messages_->time();
     }
     const MapSnapshot& snapshot = map.snapshot();
     const std::lock_guard lock(mutex_);
-    write_map(snapshot);
+    messages_->add_map(snapshot);
   }
 
   void on_finish(const Map& map) override {
-    if (!writer_) return;
-    write_map(make_snapshot(map));
+    if (!messages_) return;
+    messages_->add_map(make_snapshot(map));
+    messages_.reset();
     writer_->close();
     writer_.reset();
   }
@@ -86,33 +65,16 @@ class Mcap final : public Observer {
   /// With the first frame: until then the folder may be cleared of earlier results.
   void open() {
     writer_.emplace(folder_ / "run.mcap");
-    status_ = add("/status", "holdfast.FrameStatus");
-    pose_ = add("/camera/pose", "foxglove.PoseInFrame");
-    transforms_ = add("/tf", "foxglove.FrameTransform");
-    objects_ = add("/objects", "foxglove.SceneUpdate");
-    image_ = add("/camera/image", "foxglove.CompressedImage");
-    moving_ = add("/camera/moving", "foxglove.CompressedImage");
-    path_ = add("/map/keyframes", "foxglove.PosesInFrame");
-    points_ = add("/map/points", "foxglove.PointCloud");
-  }
-  std::uint16_t add(const char* topic, const char* schema) {
-    return writer_->add_channel(topic, schema, schema_document(schema));
-  }
-  void write(std::uint16_t channel, const Json& message) {
-    writer_->write(channel, static_cast<std::uint64_t>(std::llround(std::max(time_, 0.0) * 1e9)), message.dump());
-  }
-  void write_map(const MapSnapshot& snapshot) {
-    write(path_, path_message(time_, snapshot.keyframes));
-    write(points_, cloud_message(time_, snapshot.points));
+    messages_.emplace(*writer_, mcap::RunMessages::Options{settings_.image_every, settings_.quality}, camera_);
   }
 
   McapSettings settings_;
   std::filesystem::path folder_;
+  Camera camera_;
   std::mutex mutex_;
-  std::optional<McapWriter> writer_;
-  double time_ = 0.0;  // of the last frame [s]
-  double map_time_ = -1e300;
-  std::uint16_t status_ = 0, pose_ = 0, transforms_ = 0, objects_ = 0, image_ = 0, moving_ = 0, path_ = 0, points_ = 0;
+  std::optional<mcap::McapWriter> writer_;
+  std::optional<mcap::RunMessages> messages_;
+  double map_time_ = -1e300;  // of the last map [s]
 };
 
 }  // namespace

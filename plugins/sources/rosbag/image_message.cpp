@@ -8,11 +8,11 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
-#include <opencv2/imgproc.hpp>
 #include <optional>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/sensor_frame.hpp"
+#include "holdfast/image_files/ros_encodings.hpp"
 
 namespace holdfast::rosbag_plugin {
 
@@ -71,21 +71,6 @@ void check_pixels(const RawImage& image, std::size_t bytes_of_pixel, const std::
 cv::Mat view_of(const RawImage& image, int type) {
   return {image.size, type, const_cast<std::uint8_t*>(image.pixels.data()), image.bytes_to_next_row};
 }
-
-/// How an encoding of colour becomes blue, green, red.
-struct ColourEncoding {
-  const char* name;
-  int type, conversion;  // -1: none
-};
-constexpr ColourEncoding colour_encodings[] = {
-    {"rgb8", CV_8UC3, cv::COLOR_RGB2BGR},
-    {"bgr8", CV_8UC3, -1},
-    {"8UC3", CV_8UC3, -1},
-    {"rgba8", CV_8UC4, cv::COLOR_RGBA2BGR},
-    {"bgra8", CV_8UC4, cv::COLOR_BGRA2BGR},
-    {"mono8", CV_8UC1, cv::COLOR_GRAY2BGR},
-    {"8UC1", CV_8UC1, cv::COLOR_GRAY2BGR},
-};
 
 /// A sensor_msgs/CompressedImage; its bytes lie in the message.
 struct CompressedImage {
@@ -184,20 +169,13 @@ cv::Mat ImageMessages::colour(const Message& message, const ImageDecoder::SizeCh
   if (message.type == compressed_image_type)
     return decoder_.decode_widened(read_compressed(message).bytes, place, check_size);
   const RawImage image = read_image(message);
-  for (const ColourEncoding& encoding : colour_encodings) {
-    if (image.encoding != encoding.name) continue;
-    check_pixels(image, CV_ELEM_SIZE(encoding.type), place);
-    check_size(image.size);
-    const cv::Mat view = view_of(image, encoding.type);
-    if (encoding.conversion < 0) return view.clone();
-    cv::Mat converted;
-    cv::cvtColor(view, converted, encoding.conversion);
-    return converted;
-  }
-  std::string known;
-  for (const ColourEncoding& encoding : colour_encodings) known += std::string(", ") + encoding.name;
-  refuse(place, "has the encoding '" + image.encoding + "'; expected a colour image, one of " + known.substr(2) +
-                    "; choose another topic with `colour`, or convert it with image_proc");
+  const RosColourEncoding* encoding = find_ros_colour_encoding(image.encoding);
+  if (encoding == nullptr)
+    refuse(place, "has the encoding '" + image.encoding + "'; expected a colour image, one of " +
+                      ros_colour_encodings() + "; choose another topic with `colour`, or convert it with image_proc");
+  check_pixels(image, CV_ELEM_SIZE(encoding->type), place);
+  check_size(image.size);
+  return to_blue_green_red(view_of(image, encoding->type), *encoding);
 }
 
 cv::Mat ImageMessages::depth(const Message& message, const DepthEncoding& encoding,

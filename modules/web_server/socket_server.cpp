@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "server.hpp"
+#include "holdfast/web_server/socket_server.hpp"
 
 #include <fcntl.h>
+#include <sys/random.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,8 +13,11 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
+#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -22,7 +26,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/thread_name.hpp"
 
-namespace holdfast::viewer {
+namespace holdfast {
 
 namespace asio = boost::asio;
 namespace beast = boost::beast;
@@ -33,7 +37,6 @@ using boost::asio::ip::tcp;
 namespace {
 
 constexpr std::size_t longest_request = 8192;  // with its headers [bytes]
-constexpr std::size_t longest_command = 64;    // [bytes]
 constexpr int most_connections = 64;
 constexpr auto request_time = std::chrono::seconds(10);
 /// Until the next attempt to accept a connection, after the system has refused to, as without a free descriptor.
@@ -51,29 +54,54 @@ bool is_same_secret(std::string_view given, std::string_view secret) {
   return difference == 0;
 }
 
-/// The rate that a message asks for, nothing if it is no such message.
-std::optional<double> asked_rate(std::string_view text) {
-  constexpr std::array<std::pair<std::string_view, double>, 6> rates{{{"rate 0", 0.0},
-                                                                      {"rate 1", 1.0},
-                                                                      {"rate 2", 2.0},
-                                                                      {"rate 5", 5.0},
-                                                                      {"rate 10", 10.0},
-                                                                      {"rate 30", Server::fastest_rate}}};
-  for (const auto& [name, rate] : rates)
-    if (name == text) return rate;
-  return std::nullopt;
+/// The first of `known` among the comma-separated names that a client offers; empty if there is none.
+std::string common_protocol(beast::string_view offered, const std::vector<std::string>& known) {
+  http::token_list names(offered);
+  for (const std::string& name : known)
+    if (names.exists(name)) return name;
+  return {};
 }
 
 }  // namespace
 
+namespace {
+
+std::mutex servers_mutex;
+std::vector<const SocketServer*> servers;  // guarded by servers_mutex
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> running_servers() {
+  const std::lock_guard lock(servers_mutex);
+  std::vector<std::pair<std::string, std::string>> list;
+  for (const SocketServer* server : servers) list.emplace_back(server->name(), server->address());
+  return list;
+}
+
+std::string random_token() {
+  std::array<unsigned char, 16> bytes{};
+  std::size_t filled = 0;
+  while (filled < bytes.size()) {
+    const ssize_t count = getrandom(bytes.data() + filled, bytes.size() - filled, 0);
+    if (count < 0 && errno != EINTR) throw Error("a token cannot be made: the system gives no random numbers");
+    if (count > 0) filled += static_cast<std::size_t>(count);
+  }
+  std::string token;
+  for (const unsigned char byte : bytes) {
+    char digits[3];
+    std::snprintf(digits, sizeof(digits), "%02x", byte);
+    token += digits;
+  }
+  return token;
+}
+
 class SocketSession;
 class RequestSession;
 
-struct Server::State {
-  State(std::string secret, std::string page_text, Handlers given)
-      : token(std::move(secret)), page(std::move(page_text)), handlers(std::move(given)) {}
+struct SocketServer::State {
+  State(Options given, Handlers calls) : options(std::move(given)), handlers(std::move(calls)) {}
 
-  void listen(const std::string& at, int port);
+  void listen();
   void run();
   void accept();
   void accept_later();
@@ -81,10 +109,10 @@ struct Server::State {
   void tick();
   void add(const std::shared_ptr<SocketSession>& session);
   void remove(const SocketSession* session);
-  void report() const;
 
-  std::string token, page, address;
+  Options options;
   Handlers handlers;
+  std::string address;
   // Before the context, whose end takes the last requests with it.
   std::vector<RequestSession*> silent;  // those that have not shown a token yet, the oldest first
   int connections = 0;
@@ -95,82 +123,76 @@ struct Server::State {
   std::thread thread;
 };
 
-/// A browser. Has at most one message on its way; what happens meanwhile is in the next one.
+/// A client. Has at most one message on its way; what happens meanwhile is in the next one.
 class SocketSession : public std::enable_shared_from_this<SocketSession> {
  public:
-  SocketSession(Server::State& server, tcp::socket socket) : server_(server), stream_(std::move(socket)) {}
+  SocketSession(SocketServer::State& server, tcp::socket socket) : server_(server), stream_(std::move(socket)) {}
 
-  void accept(const http::request<http::empty_body>& request) {
+  void accept(const http::request<http::empty_body>& request, const std::string& protocol) {
     stream_.set_option(websocket::stream_base::timeout{request_time, idle_time, true});
-    stream_.set_option(websocket::stream_base::decorator(
-        [](websocket::response_type& response) { response.set(http::field::server, "holdfast"); }));
-    stream_.read_message_max(longest_command);
-    stream_.binary(true);
+    stream_.set_option(websocket::stream_base::decorator([protocol](websocket::response_type& response) {
+      response.set(http::field::server, "holdfast");
+      if (!protocol.empty()) response.set(http::field::sec_websocket_protocol, protocol);
+    }));
+    stream_.read_message_max(server_.options.longest_message);
     stream_.auto_fragment(false);
     stream_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
       if (error) return;
+      self->client_ = self->server_.handlers.open();
       self->server_.add(self);
       self->read();
       self->send();
     });
   }
-  /// Sends what the browser lacks, unless a message is on its way or the browser has asked for fewer.
+  /// Sends what the client lacks, unless a message is on its way.
   void send() {
-    if (is_sending_ || is_closed_) return;
-    const auto now = std::chrono::steady_clock::now();
-    if (last_sent_ && rate_ < Server::fastest_rate &&
-        std::chrono::duration<double>(now - *last_sent_).count() * rate_ < 1.0)
-      return;
-    outgoing_ = server_.handlers.update(progress_);
-    if (outgoing_.empty()) return;
+    if (is_sending_ || !client_) return;
+    std::optional<SocketMessage> message = client_->next();
+    if (!message) return;
+    outgoing_ = std::move(message->bytes);
     is_sending_ = true;
-    last_sent_ = now;
+    stream_.text(message->is_text);
     stream_.async_write(asio::buffer(outgoing_), [self = shared_from_this()](beast::error_code error, std::size_t) {
       self->is_sending_ = false;
-      if (error) self->leave();
+      if (error) return self->leave();
+      if (!self->server_.options.is_paced) self->send();
     });
   }
-
-  double rate() const { return rate_; }
 
  private:
   void read() {
     stream_.async_read(incoming_, [self = shared_from_this()](beast::error_code error, std::size_t) {
       if (error) return self->leave();
+      if (!self->client_) return;
       const std::string text = beast::buffers_to_string(self->incoming_.data());
       self->incoming_.clear();
-      if (self->stream_.got_text() && self->obey(text)) return self->read();
+      if (self->client_->receive(text, self->stream_.got_text())) {
+        self->read();
+        if (!self->server_.options.is_paced) self->send();
+        return;
+      }
       self->leave();
       self->stream_.async_close({websocket::close_code::policy_error, "unknown message"}, [self](beast::error_code) {});
     });
   }
-  bool obey(const std::string& text) {
-    const std::optional<double> rate = asked_rate(text);
-    if (!rate) return server_.handlers.command(text);
-    rate_ = *rate;
-    server_.report();
-    return true;
-  }
   void leave() {
-    if (is_closed_) return;
-    is_closed_ = true;
+    if (!client_) return;
+    client_.reset();
     server_.remove(this);
   }
 
-  Server::State& server_;
+  SocketServer::State& server_;
   websocket::stream<beast::tcp_stream> stream_;
   beast::flat_buffer incoming_;
   std::string outgoing_;
-  Progress progress_;
-  double rate_ = Server::fastest_rate;  // most messages per second
-  std::optional<std::chrono::steady_clock::time_point> last_sent_;
-  bool is_sending_ = false, is_closed_ = false;
+  std::unique_ptr<SocketClient> client_;  // null when it has left
+  bool is_sending_ = false;
 };
 
 /// One request, which is answered, or becomes a SocketSession.
 class RequestSession : public std::enable_shared_from_this<RequestSession> {
  public:
-  RequestSession(Server::State& server, tcp::socket socket) : server_(server), stream_(std::move(socket)) {
+  RequestSession(SocketServer::State& server, tcp::socket socket) : server_(server), stream_(std::move(socket)) {
     ++server_.connections;
     parser_.emplace();
     parser_->header_limit(longest_request);
@@ -206,16 +228,21 @@ class RequestSession : public std::enable_shared_from_this<RequestSession> {
     const std::size_t mark = target.find('?');
     const std::string_view path = target.substr(0, mark);
     const std::string_view query = mark == std::string_view::npos ? "" : target.substr(mark + 1);
-    if (!is_same_secret(query, "token=" + server_.token))
+    const SocketServer::Options& options = server_.options;
+    if (!is_same_secret(query, "token=" + options.token))
       return refuse(http::status::forbidden, "the token is missing or wrong; take the address that the program shows");
-    if (path != "/" && path != "/socket") return refuse(http::status::not_found, "there is only the page");
+    const bool is_page = path == "/" && !options.page.empty();
+    if (!is_page && path != options.socket_path) return refuse(http::status::not_found, "there is no such page");
     if (request.method() != http::verb::get) return refuse(http::status::method_not_allowed, "expected GET");
-    if (path == "/") return respond(http::status::ok, "text/html; charset=utf-8", server_.page);
+    if (is_page) return respond(http::status::ok, "text/html; charset=utf-8", options.page);
     if (!websocket::is_upgrade(request)) return refuse(http::status::upgrade_required, "expected a WebSocket");
-    if (static_cast<int>(server_.sessions.size()) >= Server::most_browsers)
-      return refuse(http::status::service_unavailable, "too many browsers watch this run");
+    const std::string protocol = common_protocol(request[http::field::sec_websocket_protocol], options.protocols);
+    if (protocol.empty() && !options.protocols.empty())
+      return refuse(http::status::bad_request, "expected the subprotocol " + options.protocols.front());
+    if (static_cast<int>(server_.sessions.size()) >= SocketServer::max_clients)
+      return refuse(http::status::service_unavailable, "too many clients are connected");
     stream_.expires_never();
-    std::make_shared<SocketSession>(server_, stream_.release_socket())->accept(request);
+    std::make_shared<SocketSession>(server_, stream_.release_socket())->accept(request, protocol);
   }
   void refuse(http::status status, const std::string& reason) {
     respond(status, "text/plain; charset=utf-8", reason + "\n");
@@ -242,7 +269,7 @@ class RequestSession : public std::enable_shared_from_this<RequestSession> {
     });
   }
 
-  Server::State& server_;
+  SocketServer::State& server_;
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_{longest_request};
   std::optional<http::request_parser<http::empty_body>> parser_;
@@ -262,16 +289,16 @@ std::string host_of(const tcp::endpoint& endpoint) {
 
 }  // namespace
 
-void Server::State::listen(const std::string& at, int port) {
+void SocketServer::State::listen() {
   const auto fail = [&](const std::string& reason) {
-    throw InputError({"viewer"},
-                     "cannot listen at " + at + ", port " + std::to_string(port) + ": " + reason +
+    throw InputError({options.name},
+                     "cannot listen at " + options.listen + ", port " + std::to_string(options.port) + ": " + reason +
                          "; give `listen` a numeric address of this machine, and `port` 0 for any free one");
   };
   beast::error_code error;
-  const asio::ip::address numeric = asio::ip::make_address(at, error);
+  const asio::ip::address numeric = asio::ip::make_address(options.listen, error);
   if (error) fail(error.message());
-  const tcp::endpoint endpoint(numeric, static_cast<std::uint16_t>(port));
+  const tcp::endpoint endpoint(numeric, static_cast<std::uint16_t>(options.port));
   acceptor.open(endpoint.protocol(), error);
   if (error) fail(error.message());
   fcntl(acceptor.native_handle(), F_SETFD, FD_CLOEXEC);  // a program that this one starts would keep the port
@@ -281,12 +308,12 @@ void Server::State::listen(const std::string& at, int port) {
   acceptor.listen(asio::socket_base::max_listen_connections, error);
   if (error) fail(error.message());
   const tcp::endpoint bound = acceptor.local_endpoint();
-  address = "http://" + host_of(bound) + ":" + std::to_string(bound.port()) + "/?token=" + token;
+  address = options.scheme + "://" + host_of(bound) + ":" + std::to_string(bound.port()) + "/?token=" + options.token;
 }
 
 /// Makes room for a connection, at the cost of one that has shown no token: browsers send theirs at once. False if
 /// there is none.
-bool Server::State::close_oldest_silent() {
+bool SocketServer::State::close_oldest_silent() {
   if (silent.empty()) return false;
   RequestSession* const oldest = silent.front();
   silent.erase(silent.begin());
@@ -294,14 +321,14 @@ bool Server::State::close_oldest_silent() {
   return true;
 }
 
-void Server::State::accept_later() {
+void SocketServer::State::accept_later() {
   accept_timer.expires_after(accept_pause);
   accept_timer.async_wait([this](beast::error_code error) {
     if (!error) accept();
   });
 }
 
-void Server::State::accept() {
+void SocketServer::State::accept() {
   acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
     // Where there is no descriptor for it, the connection waits, and the system says so again and again.
@@ -316,7 +343,7 @@ void Server::State::accept() {
   });
 }
 
-void Server::State::tick() {
+void SocketServer::State::tick() {
   timer.expires_after(sessions.empty() ? tick_alone : tick_watched);
   timer.async_wait([this](beast::error_code error) {
     if (error) return;
@@ -327,47 +354,46 @@ void Server::State::tick() {
   });
 }
 
-void Server::State::add(const std::shared_ptr<SocketSession>& session) {
+void SocketServer::State::add(const std::shared_ptr<SocketSession>& session) {
   sessions.push_back(session);
-  report();
   handlers.tick();
   tick();  // at once at the faster rate
 }
 
-void Server::State::remove(const SocketSession* session) {
+void SocketServer::State::remove(const SocketSession* session) {
   std::erase_if(sessions, [&](const auto& other) { return other.get() == session; });
-  report();
 }
 
-void Server::State::report() const {
-  double rate = 0.0;
-  for (const auto& session : sessions) rate = std::max(rate, session->rate());
-  handlers.watched(static_cast<int>(sessions.size()), rate);
-}
-
-void Server::State::run() {
-  name_this_thread("viewer");
+void SocketServer::State::run() {
+  name_this_thread(options.name);
   accept();
   tick();
   io.run();
 }
 
-Server::Server(const std::string& listen, int port, std::string token, std::string page, Handlers handlers)
-    : state_(std::make_unique<State>(std::move(token), std::move(page), std::move(handlers))) {
-  state_->listen(listen, port);
+SocketServer::SocketServer(Options options, Handlers handlers)
+    : state_(std::make_unique<State>(std::move(options), std::move(handlers))) {
+  state_->listen();
   // Signals are for the thread that runs the frames, which may be waiting for its turn.
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
   state_->thread = std::thread([state = state_.get()] { state->run(); });
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  const std::lock_guard lock(servers_mutex);
+  servers.push_back(this);
 }
 
-Server::~Server() {
+SocketServer::~SocketServer() {
+  {
+    const std::lock_guard lock(servers_mutex);
+    std::erase(servers, this);
+  }
   state_->io.stop();
   state_->thread.join();
 }
 
-const std::string& Server::address() const { return state_->address; }
+const std::string& SocketServer::name() const { return state_->options.name; }
+const std::string& SocketServer::address() const { return state_->address; }
 
-}  // namespace holdfast::viewer
+}  // namespace holdfast

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "messages.hpp"
+#include "foxglove_messages.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,12 +10,9 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/health_reason_names.hpp"
 
-namespace holdfast::mcap_plugin {
+namespace holdfast::mcap {
 
 namespace {
-
-/// Shapes of a scene entity that are always empty here; readers expect the fields.
-constexpr const char* unused_shapes[] = {"spheres", "cylinders", "lines", "triangles", "models"};
 
 /// RFC 4648, section 4.
 std::string base64(std::span<const std::uint8_t> bytes) {
@@ -47,91 +44,8 @@ Json pose_of(const Eigen::Isometry3d& T) {
 Json encoded(double time, const cv::Mat& image, const std::string& format, const std::vector<int>& options) {
   std::vector<std::uint8_t> bytes;
   if (!cv::imencode("." + format, image, bytes, options))
-    throw Error("observer 'mcap': this OpenCV cannot write " + format + " images; set image_every to 0");
+    throw Error("this OpenCV cannot write " + format + " images; set `image_every` of the observer to 0");
   return {{"timestamp", time_of(time)}, {"frame_id", camera_frame}, {"format", format}, {"data", base64(bytes)}};
-}
-
-Json type(const char* name) { return {{"type", name}}; }
-
-Json object(Json properties) { return {{"type", "object"}, {"properties", std::move(properties)}}; }
-
-Json list(Json items) { return {{"type", "array"}, {"items", std::move(items)}}; }
-
-Json time_schema() { return object({{"sec", type("integer")}, {"nsec", type("integer")}}); }
-
-Json numbers_schema(std::initializer_list<const char*> names) {
-  Json properties = Json::object();
-  for (const char* name : names) properties[name] = type("number");
-  return object(properties);
-}
-
-Json pose_schema() {
-  return object({{"position", numbers_schema({"x", "y", "z"})}, {"orientation", numbers_schema({"x", "y", "z", "w"})}});
-}
-
-Json data_schema() { return {{"type", "string"}, {"contentEncoding", "base64"}}; }
-
-Json entity_schema() {
-  const Json colour = numbers_schema({"r", "g", "b", "a"});
-  Json properties = {{"timestamp", time_schema()},
-                     {"frame_id", type("string")},
-                     {"id", type("string")},
-                     {"lifetime", time_schema()},
-                     {"frame_locked", type("boolean")},
-                     {"metadata", list(object({{"key", type("string")}, {"value", type("string")}}))}};
-  properties["arrows"] = list(object({{"pose", pose_schema()},
-                                      {"shaft_length", type("number")},
-                                      {"shaft_diameter", type("number")},
-                                      {"head_length", type("number")},
-                                      {"head_diameter", type("number")},
-                                      {"color", colour}}));
-  properties["cubes"] =
-      list(object({{"pose", pose_schema()}, {"size", numbers_schema({"x", "y", "z"})}, {"color", colour}}));
-  properties["texts"] = list(object({{"pose", pose_schema()},
-                                     {"billboard", type("boolean")},
-                                     {"font_size", type("number")},
-                                     {"scale_invariant", type("boolean")},
-                                     {"color", colour},
-                                     {"text", type("string")}}));
-  for (const char* unused : unused_shapes) properties[unused] = list(type("object"));
-  return object(properties);
-}
-
-Json properties_of(const std::string& name) {
-  const Json head = {{"timestamp", time_schema()}, {"frame_id", type("string")}};
-  const auto with = [&](const Json& more) {
-    Json all = head;
-    all.update(more);
-    return all;
-  };
-  if (name == "foxglove.PoseInFrame") return with({{"pose", pose_schema()}});
-  if (name == "foxglove.PosesInFrame") return with({{"poses", list(pose_schema())}});
-  if (name == "foxglove.CompressedImage") return with({{"data", data_schema()}, {"format", type("string")}});
-  if (name == "foxglove.PointCloud")
-    return with(
-        {{"pose", pose_schema()},
-         {"point_stride", type("integer")},
-         {"fields", list(object({{"name", type("string")}, {"offset", type("integer")}, {"type", type("integer")}}))},
-         {"data", data_schema()}});
-  if (name == "foxglove.FrameTransform")
-    return {{"timestamp", time_schema()},
-            {"parent_frame_id", type("string")},
-            {"child_frame_id", type("string")},
-            {"translation", numbers_schema({"x", "y", "z"})},
-            {"rotation", numbers_schema({"x", "y", "z", "w"})}};
-  if (name == "foxglove.SceneUpdate")
-    return {
-        {"deletions", list(object({{"timestamp", time_schema()}, {"type", type("integer")}, {"id", type("string")}}))},
-        {"entities", list(entity_schema())}};
-  Json status = {{"timestamp", time_schema()}, {"index", type("integer")}};
-  for (const char* text : {"health", "status", "method", "fallback", "failure"}) status[text] = type("string");
-  for (const char* number : {"features", "static_features", "matches", "inliers"}) status[number] = type("integer");
-  status["reasons"] = list(type("string"));
-  status["covariance"] = list(type("number"));
-  status["jump"] = type("number");
-  status["is_keyframe"] = type("boolean");
-  status["tracking_ms"] = type("number");
-  return status;
 }
 
 }  // namespace
@@ -173,6 +87,34 @@ Json cloud_message(double time, const std::vector<MapSnapshot::Point>& points) {
 
 Json image_message(double time, const cv::Mat& image, int quality) {
   return encoded(time, image, "jpeg", {cv::IMWRITE_JPEG_QUALITY, quality});
+}
+
+Json calibration_message(double time, const Camera& camera) {
+  const char* model = camera.distortion.lens == Lens::fisheye ? "kannala_brandt"
+                      : camera.distortion.is_rational()       ? "rational_polynomial"
+                                                              : "plumb_bob";
+  return {{"timestamp", time_of(time)},
+          {"frame_id", camera_frame},
+          {"width", camera.width},
+          {"height", camera.height},
+          {"distortion_model", model},
+          {"D", camera.distortion.coefficients()},
+          {"K", {camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1}},
+          {"R", {1, 0, 0, 0, 1, 0, 0, 0, 1}},
+          {"P", {camera.fx, 0, camera.cx, 0, 0, camera.fy, camera.cy, 0, 0, 0, 1, 0}}};
+}
+
+Json log_message(double time, const FrameHealth& health) {
+  constexpr int information = 2, warning = 3, error = 4;
+  int level = warning;
+  if (health.state == HealthState::good) level = information;
+  if (health.state == HealthState::lost || health.state == HealthState::stalled) level = error;
+  std::string text = to_string(health.state);
+  for (const std::string& reason : names_of(health.reasons))
+    text += (text.find(':') == std::string::npos ? ": " : ", ") + reason;
+  if (health.jump > 0.0) text += ", the pose moved by " + std::to_string(health.jump) + " m";
+  return {{"timestamp", time_of(time)}, {"level", level}, {"message", std::move(text)},
+          {"name", "health"},           {"file", ""},     {"line", 0}};
 }
 
 Json moving_message(double time, const CoarseView& view) {
@@ -246,10 +188,4 @@ Json status_message(const FrameResult& result) {
           {"tracking_ms", result.tracking_seconds * 1e3}};
 }
 
-std::string schema_document(const std::string& name) {
-  Json document = {{"title", name}};
-  document.update(object(properties_of(name)));
-  return document.dump();
-}
-
-}  // namespace holdfast::mcap_plugin
+}  // namespace holdfast::mcap

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mcap_writer.hpp"
+#include "holdfast/mcap/mcap_writer.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -9,8 +9,9 @@
 #include "holdfast/core/byte_writer.hpp"
 #include "holdfast/core/crc32.hpp"
 #include "holdfast/core/error.hpp"
+#include "zstd_chunk.hpp"
 
-namespace holdfast::mcap_plugin {
+namespace holdfast::mcap {
 
 namespace {
 
@@ -50,13 +51,14 @@ std::uint32_t checksum(const std::string& bytes) {
 
 }  // namespace
 
-McapWriter::McapWriter(std::filesystem::path file) : file_(std::move(file)) {
+McapWriter::McapWriter(std::filesystem::path file, const std::string& profile, Compression compression)
+    : file_(std::move(file)), compression_(has_zstd ? compression : Compression::none) {
   std::error_code error;
   std::filesystem::create_directories(file_.parent_path(), error);
   stream_.open(file_, std::ios::binary | std::ios::trunc);
   put(magic);
   ByteWriter header;
-  put_text(header, "");  // no profile
+  put_text(header, profile);
   put_text(header, "holdfast");
   put(record(Kind::header, header));
 }
@@ -70,9 +72,8 @@ void McapWriter::put(std::string_view bytes) {
   written_ += bytes.size();
 }
 
-std::uint16_t McapWriter::add_channel(const std::string& topic, const std::string& schema_name,
-                                      const std::string& schema) {
-  channels_.push_back({topic, schema_name, schema});
+std::uint16_t McapWriter::add_channel(const Channel& channel) {
+  channels_.push_back({channel});
   return static_cast<std::uint16_t>(channels_.size());
 }
 
@@ -85,12 +86,12 @@ std::string McapWriter::definitions() const {
     ByteWriter schema, channel;
     schema.put(id);
     put_text(schema, definition.schema_name);
-    put_text(schema, "jsonschema");
+    put_text(schema, definition.schema_encoding);
     put_text(schema, definition.schema);
     channel.put(id);
     channel.put(id);  // of the schema
     put_text(channel, definition.topic);
-    put_text(channel, "json");
+    put_text(channel, definition.message_encoding);
     put_text(channel, "");  // no metadata
     records += record(Kind::schema, schema) + record(Kind::channel, channel);
   }
@@ -116,6 +117,8 @@ void McapWriter::write(std::uint16_t channel, std::uint64_t time, std::string_vi
   if (chunk_.size() >= chunk_bytes) put_chunk();
 }
 
+const char* McapWriter::compression_name() const { return compression_ == Compression::zstd ? "zstd" : ""; }
+
 void McapWriter::put_chunk() {
   if (chunk_.empty()) return;
   ChunkIndex index{.begin = chunk_begin_, .end = chunk_end_, .offset = written_, .size = chunk_.size()};
@@ -124,11 +127,21 @@ void McapWriter::put_chunk() {
   content.put(chunk_end_);
   content.put(index.size);
   content.put(checksum(chunk_));
-  put_text(content, "");    // not compressed
-  content.put(index.size);  // stored
+  if (compression_ == Compression::zstd) chunk_ = compress_zstd(chunk_);
+  index.stored = chunk_.size();
+  put_text(content, compression_name());
+  content.put(index.stored);
   content.put_bytes(chunk_);
   put(record(Kind::chunk, content));
   index.length = written_ - index.offset;
+  put_message_indexes(index);
+  chunks_.push_back(std::move(index));
+  chunk_.clear();
+  chunk_messages_.clear();
+  if (!stream_.flush()) fail();
+}
+
+void McapWriter::put_message_indexes(ChunkIndex& index) {
   for (const auto& [channel, messages] : chunk_messages_) {
     index.index_offsets[channel] = written_;
     ByteWriter entries, content;
@@ -141,13 +154,9 @@ void McapWriter::put_chunk() {
     put(record(Kind::message_index, content));
   }
   index.index_length = written_ - index.offset - index.length;
-  chunks_.push_back(std::move(index));
-  chunk_.clear();
-  chunk_messages_.clear();
-  if (!stream_.flush()) fail();
 }
 
-ByteWriter McapWriter::content_of(const ChunkIndex& chunk) {
+ByteWriter McapWriter::content_of(const ChunkIndex& chunk) const {
   ByteWriter offsets, content;
   for (const auto& [channel, offset] : chunk.index_offsets) {
     offsets.put(channel);
@@ -156,8 +165,8 @@ ByteWriter McapWriter::content_of(const ChunkIndex& chunk) {
   for (const std::uint64_t number : {chunk.begin, chunk.end, chunk.offset, chunk.length}) content.put(number);
   put_text(content, offsets.bytes());
   content.put(chunk.index_length);
-  put_text(content, "");    // not compressed
-  content.put(chunk.size);  // stored
+  put_text(content, compression_name());
+  content.put(chunk.stored);
   content.put(chunk.size);
   return content;
 }
@@ -204,4 +213,4 @@ void McapWriter::close() {
   if (!stream_) fail();
 }
 
-}  // namespace holdfast::mcap_plugin
+}  // namespace holdfast::mcap

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bag_recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "depth_units.hpp"
+#include "holdfast/core/atomic_file.hpp"
+#include "holdfast/core/error.hpp"
+#include "holdfast/core/trajectory.hpp"
+#include "holdfast/mcap/sensor_messages.hpp"
+#include "output_file.hpp"
+#include "recorded_configuration.hpp"
+
+namespace holdfast {
+
+namespace {
+
+// As realsense2_camera names them, so that the source `rosbag` and the nodes of ROS find them.
+constexpr const char* colour_topic = "/camera/color/image_raw";
+constexpr const char* depth_topic = "/camera/aligned_depth_to_color/image_raw";
+constexpr const char* camera_info_topic = "/camera/color/camera_info";
+constexpr const char* imu_topic = "/camera/imu";
+constexpr const char* camera_frame = "camera_color_optical_frame";
+constexpr const char* imu_frame = "camera_imu_optical_frame";
+
+constexpr double millimetres = 1000.0;  // of 16UC1 (REP 118)
+constexpr std::size_t waiting_frames = 4;
+
+const SourceDescription& without_right(const Configuration& configuration, const SourceDescription& source) {
+  if (source.has_depth || !source.has_right) return source;
+  throw ConfigurationError(
+      configuration.source.location,
+      "the source '" + configuration.source.name +
+          "' has stereo pairs, which the source 'rosbag' does not read; choose a source with depth "
+          "or one camera");
+}
+
+}  // namespace
+
+BagRecorder::BagRecorder(const Configuration& configuration, const Registry& registry, const SourceDescription& source,
+                         std::filesystem::path file, bool overwrite)
+    : file_(std::move(file)),
+      configuration_(recorded_configuration(configuration, registry, without_right(configuration, source), "rosbag")) {
+  require_new_files({file_, configuration_file(), truth_file()}, overwrite);
+  std::error_code ignored;
+  std::filesystem::remove(truth_file(), ignored);
+  configuration_.source.values["path"] = file_.filename().string();
+  // A bag does not tell that all rows are exposed at once.
+  if (source.has_global_shutter) configuration_.sections["tracking"]["rolling_shutter"] = std::string("off");
+  bag_.emplace(file_, "ros2", mcap::Compression::zstd);
+  colour_ = bag_->add_channel(mcap::sensor_channel(colour_topic, "Image"));
+  if (source.has_depth) depth_ = bag_->add_channel(mcap::sensor_channel(depth_topic, "Image"));
+  if (configuration_.camera) camera_info_ = bag_->add_channel(mcap::sensor_channel(camera_info_topic, "CameraInfo"));
+  if (source.has_imu) imu_ = bag_->add_channel(mcap::sensor_channel(imu_topic, "Imu"));
+  writer_.emplace("recorder", waiting_frames, [this](const SensorFrame& frame) { write(frame); });
+}
+
+std::filesystem::path BagRecorder::configuration_file() const {
+  return std::filesystem::path(file_).replace_extension(".yaml");
+}
+
+std::filesystem::path BagRecorder::truth_file() const {
+  return std::filesystem::path(file_).replace_extension(".truth.txt");
+}
+
+void BagRecorder::record(const SensorFrame& frame) {
+  if (frame.colour.empty() || (depth_ != 0 && frame.depth.empty()))
+    throw InputError({"frame " + std::to_string(frame.index)},
+                     "has no colour or no depth image, and cannot be recorded; check the source");
+  writer_->rethrow();
+  writer_->queue().push(frame);
+  ++frames_;
+  largest_delay_ = std::max(largest_delay_, std::abs(frame.depth_delay));
+}
+
+void BagRecorder::write(const SensorFrame& frame) {
+  const mcap::MessageHeader header{mcap::message_stamp(frame.timestamp), camera_frame};
+  if (imu_ != 0) write_imu(frame);
+  if (camera_info_ != 0)
+    bag_->write(camera_info_, header.stamp, mcap::camera_info_message(header, *configuration_.camera));
+  const char* encoding = frame.colour.channels() == 1 ? "mono8" : "bgr8";
+  bag_->write(colour_, header.stamp, mcap::image_message(header, encoding, frame.colour));
+  if (depth_ == 0) return;
+  const mcap::MessageHeader at_depth{mcap::message_stamp(frame.timestamp + frame.depth_delay), camera_frame};
+  const bool is_whole = exact_depth_factor(frame.depth, {millimetres}) == millimetres;
+  bag_->write(depth_, at_depth.stamp,
+              is_whole ? mcap::image_message(at_depth, "16UC1", to_depth_units(frame.depth, millimetres))
+                       : mcap::image_message(at_depth, "32FC1", frame.depth));
+}
+
+void BagRecorder::write_imu(const SensorFrame& frame) {
+  for (const ImuSample& sample : frame.imu) {
+    if (!(sample.timestamp > last_imu_stamp_)) continue;  // shared with the frame before
+    const mcap::MessageHeader header{mcap::message_stamp(sample.timestamp), imu_frame};
+    bag_->write(imu_, header.stamp, mcap::imu_message(header, sample));
+    last_imu_stamp_ = sample.timestamp;
+  }
+}
+
+void BagRecorder::finish(const Trajectory& truth) {
+  writer_->finish();
+  bag_->close();
+  writer_->rethrow();
+  ParameterValues& values = configuration_.source.values;
+  if (!truth.empty()) {
+    write_trajectory(truth_file(), truth);
+    values["truth"] = truth_file().filename().string();
+  }
+  // Whole millimetres up to the largest number.
+  values["invalid_depth"] = std::int64_t{0};
+  if (double& limit = std::get<double>(values["max_time_difference"]); largest_delay_ >= limit)
+    limit = std::min(1.0, 1.01 * largest_delay_);
+  write_file_atomically(configuration_file(), to_yaml(configuration_));
+}
+
+}  // namespace holdfast

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "holdfast/config/configuration.hpp"
+#include "holdfast/core/worker.hpp"
+#include "holdfast/interfaces/frame_source.hpp"
+#include "holdfast/mcap/mcap_writer.hpp"
+
+namespace holdfast {
+
+/// Records the frames of a source in an MCAP file of ROS 2: raw images, camera_info and inertial measurements, and
+/// beside it the configuration that reads them (FILE.yaml) and the truth (FILE.truth.txt). Images and depth are
+/// recorded without loss: depth as 16UC1 if it is in whole millimetres, else as 32FC1. Time stamps have nanoseconds.
+///
+/// A thread compresses and writes; record() waits for it when four frames wait. What was recorded is readable if the
+/// program is killed.
+class BagRecorder {
+ public:
+  /// Throws ConfigurationError for a stereo source, and InputError for a file that is there, unless `overwrite`.
+  BagRecorder(const Configuration& configuration, const Registry& registry, const SourceDescription& source,
+              std::filesystem::path file, bool overwrite);
+
+  /// Throws InputError if an earlier frame could not be written, and Error for a time stamp that a message cannot hold.
+  void record(const SensorFrame& frame);
+  /// Completes the file and writes those beside it.
+  void finish(const Trajectory& truth);
+
+  std::uint64_t frame_count() const { return frames_; }
+  /// Nothing is lost; see Recorder.
+  static std::string losses() { return {}; }
+  const std::filesystem::path& target() const { return file_; }
+  std::filesystem::path configuration_file() const;
+
+ private:
+  std::filesystem::path truth_file() const;
+  void write(const SensorFrame& frame);
+  void write_imu(const SensorFrame& frame);
+
+  std::filesystem::path file_;
+  Configuration configuration_;
+  std::optional<mcap::McapWriter> bag_;
+  std::uint16_t colour_ = 0, depth_ = 0, camera_info_ = 0, imu_ = 0;  // channels; 0 = none
+  std::uint64_t frames_ = 0;
+  double largest_delay_ = 0.0;    // of depth [s]
+  double last_imu_stamp_ = -1.0;  // that was written [s]
+  std::optional<Worker<SensorFrame>> writer_;
+};
+
+}  // namespace holdfast

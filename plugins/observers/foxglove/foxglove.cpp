@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <atomic>
+#include <ctime>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "foxglove_description.hpp"
+#include "holdfast/core/error.hpp"
+#include "holdfast/interfaces/observer.hpp"
+#include "holdfast/mcap/run_messages.hpp"
+#include "holdfast/plugin/plugin.hpp"
+#include "holdfast/settings/foxglove.hpp"
+#include "live_client.hpp"
+
+namespace holdfast {
+
+namespace {
+
+using namespace foxglove_plugin;
+
+std::string checked_token(const std::string& token) {
+  constexpr const char* allowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+  if (token.find_first_not_of(allowed) != std::string::npos)
+    throw InputError({"observer 'foxglove'"},
+                     "the token has characters that an address cannot have; expected letters, "
+                     "digits, - and _, or nothing for a random one");
+  return token.empty() ? random_token() : token;
+}
+
+/// The clients of one run. Functions are called by the thread of the server, but for count().
+class LiveClients {
+ public:
+  explicit LiveClients(LiveChannels& channels) : channels_(channels) {}
+
+  std::unique_ptr<SocketClient> open() {
+    auto client = std::make_unique<Registered>(*this);
+    clients_.push_back(client->get());
+    count_ = static_cast<int>(clients_.size());
+    return client;
+  }
+  void hand_out() {
+    for (const auto& message : channels_.take_messages())
+      for (LiveClient* client : clients_) client->add(message);
+  }
+  int count() const { return count_; }
+
+ private:
+  class Registered final : public SocketClient {
+   public:
+    explicit Registered(LiveClients& clients) : clients_(clients), client_(clients.channels_, clients.session_) {}
+    ~Registered() override {
+      std::erase(clients_.clients_, &client_);
+      clients_.count_ = static_cast<int>(clients_.clients_.size());
+    }
+    Registered(const Registered&) = delete;
+    Registered& operator=(const Registered&) = delete;
+    std::optional<SocketMessage> next() override { return client_.next(); }
+    bool receive(std::string_view message, bool is_text) override { return client_.receive(message, is_text); }
+    LiveClient* get() { return &client_; }
+
+   private:
+    LiveClients& clients_;
+    LiveClient client_;
+  };
+
+  LiveChannels& channels_;
+  const std::string session_ = random_token();
+  std::vector<LiveClient*> clients_;
+  std::atomic<int> count_ = 0;
+};
+
+/// Sends what a run finds to clients by Foxglove's WebSocket protocol. The tracking and the mapping thread make the
+/// messages, and wait for no client.
+class Foxglove final : public Observer {
+ public:
+  Foxglove(const FoxgloveSettings& settings, const CreationContext& context)
+      : settings_(settings),
+        messages_(channels_, {settings.image_every, settings.quality}, context.camera),
+        clients_(channels_),
+        server_({.name = "foxglove",
+                 .scheme = "ws",
+                 .listen = settings.listen,
+                 .port = settings.port,
+                 .token = checked_token(settings.token),
+                 .protocols = {"foxglove.websocket.v1", "foxglove.sdk.v1"},
+                 .longest_message = 1U << 16},
+                {.tick = [this] { clients_.hand_out(); }, .open = [this] { return clients_.open(); }}) {}
+
+  void on_frame(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result) override {
+    if (settings_.wait && !std::exchange(has_waited_, true)) wait_for_client();
+    const std::lock_guard lock(mutex_);
+    messages_.add_frame(sensor_frame, frame, result);
+  }
+
+  void on_keyframe(KeyFrameId, const ObservedMap& map) override {
+    {
+      const std::lock_guard lock(mutex_);
+      if (messages_.time() < map_time_ + settings_.map_interval) return;
+      map_time_ = messages_.time();
+    }
+    const MapSnapshot& snapshot = map.snapshot();
+    const std::lock_guard lock(mutex_);
+    messages_.add_map(snapshot);
+  }
+
+  void on_finish(const Map& map) override {
+    const std::lock_guard lock(mutex_);
+    messages_.add_map(make_snapshot(map));
+  }
+
+ private:
+  /// Or until this thread handles a signal, which ends a sleep.
+  void wait_for_client() const {
+    const std::timespec nap{0, 20'000'000};
+    while (clients_.count() == 0)
+      if (nanosleep(&nap, nullptr) != 0) return;
+  }
+
+  FoxgloveSettings settings_;
+  LiveChannels channels_;
+  std::mutex mutex_;  // of messages_ and map_time_
+  mcap::RunMessages messages_;
+  double map_time_ = -1e300;  // of the last map [s]
+  bool has_waited_ = false;
+  LiveClients clients_;
+  SocketServer server_;  // last: its thread uses everything above
+};
+
+}  // namespace
+
+HOLDFAST_PLUGIN(foxglove, registry) {
+  registry.add<Observer, Foxglove, FoxgloveSettings>(foxglove_plugin::description());
+}
+
+}  // namespace holdfast
