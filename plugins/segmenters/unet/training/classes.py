@@ -7,8 +7,9 @@ PERSON = 1
 IGNORED = 255
 #: Some furniture: whatever it is, it is no person.
 NOT_PERSON = 254
-#: In a pack: a picture without labels, which a teacher labels (train_gpu.py); nothing else is in such a label image.
-UNLABELLED = 253
+#: In a pack: pictures without labels, which a teacher labels (train_gpu.py); nothing else is in such a label image.
+#: Either nothing is known of the picture, or boxes of people are: a pixel is in one of them, or in none.
+UNLABELLED, IN_BOX, IN_NO_BOX = 253, 252, 251
 
 #: What else VOC names.  Background to the network's user; in training, coarse heads that are not shipped tell it apart,
 #: so that less of a horse is taken for the person on it.  Their labels follow those of CLASSES.

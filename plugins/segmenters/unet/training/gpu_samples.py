@@ -15,16 +15,17 @@ from pack import PackError
 from samples import DEVIATION, MEAN, by_source
 
 #: How often a sample is a view of a picture of this source.
-PLAIN = {"voc_person": 0.14, "sbd": 0.14, "coco": 0.05, "cocoplus": 0.03, "street": 0.05, "human_290": 0.04,
-         "penn_fudan": 0.03, "ccp": 0.03, "camvid": 0.01, "davis": 0.003, "nyu": 0.11, "places": 0.09, "pinterest": 0.03,
-         "room": 0.04, "simulated": 0.10, "walking": 0.10}
-COMPOSED = 0.25
+PLAIN = {"voc_person": 0.14, "sbd": 0.14, "coco": 0.05, "instances": 0.08, "boxed": 0.24, "cocoplus": 0.02, "street": 0.02,
+         "human_290": 0.04, "penn_fudan": 0.02, "ccp": 0.02, "camvid": 0.01, "davis": 0.003, "nyu": 0.17, "places": 0.11,
+         "pinterest": 0.05, "clothes": 0.02, "room": 0.03, "simulated": 0.10, "walking": 0.06}
+COMPOSED = 0.3
 #: How often a picture of this source is the background of a composed sample, and how often its people are in it.
-BACKGROUNDS = {"nyu": 0.45, "places": 0.18, "pinterest": 0.07, "room": 0.08, "simulated": 0.10, "voc_person": 0.06, "sbd": 0.06}
-PEOPLE = {"voc_person": 0.17, "human_290": 0.22, "penn_fudan": 0.17, "ccp": 0.14, "sbd": 0.12, "cutout": 0.13,
-          "simulated": 0.05}
+BACKGROUNDS = {"nyu": 0.45, "places": 0.16, "pinterest": 0.08, "clothes": 0.03, "room": 0.08, "simulated": 0.10, "voc_person": 0.05,
+               "sbd": 0.05}
+PEOPLE = {"voc_person": 0.16, "human_290": 0.20, "penn_fudan": 0.15, "ccp": 0.13, "sbd": 0.12, "cutout": 0.12, "instances": 0.05,
+          "coco": 0.03, "simulated": 0.05}
 #: Pictures as a moving robot sees rooms: rolled and blurred more.
-ROOMS = ("nyu", "places", "pinterest", "room", "simulated", "walking")
+ROOMS = ("nyu", "places", "pinterest", "clothes", "room", "simulated", "walking")
 FOCAL_LENGTH = 0.81  # of a Kinect, in widths of the image
 METRES = 10.0 / 255.0  # of a value of the depth
 
@@ -152,10 +153,10 @@ class DeviceSamples:
         is_room = self.store.is_room[index]
         turns = torch.nonzero(self.chance(torch.where(is_room, 0.5, 0.3), count)).reshape(-1)
         if len(turns):
-            roll = self.normal(1.0, len(turns)) * torch.where(is_room[turns], 20.0, 8.0)
+            roll = self.normal(1.0, len(turns)) * torch.where(is_room[turns], 25.0, 8.0)
             pictures[turns], labels[turns] = self.turned(pictures[turns], labels[turns], roll)
         pictures = self.light(pictures)
-        blurs = torch.nonzero(self.chance(torch.where(is_room, 0.35, 0.2), count)).reshape(-1)
+        blurs = torch.nonzero(self.chance(torch.where(is_room, 0.4, 0.2), count)).reshape(-1)
         if len(blurs):
             pictures[blurs] = self.blurred(pictures[blurs])
         noisy = self.chance(0.25, count).float() * self.uniform(1.0, 8.0, count) / 255.0

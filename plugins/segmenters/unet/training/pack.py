@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A pack: all pictures and labels of a training in one small .npz (JPEG and PNG bytes inside).
+"""A pack: all pictures and labels of a training in one small .npz (JPEG and PNG bytes inside, or WebP for both).
 
 Every entry has a name such as `voc_person/000129`, a picture and labels (indices into classes.CLASSES, behind
-them those of OTHER_THINGS, 253 = unlabelled, 254 = not a person, 255 = ignored), and of some rooms the depth, 8 bits for 10 m.
+them those of OTHER_THINGS, 251 to 253 = unlabelled, 254 = not a person, 255 = ignored), and of some rooms the depth, 8 bits for 10 m.
 """
 import concurrent.futures
 import zipfile
@@ -10,16 +10,26 @@ import zipfile
 import cv2
 import numpy as np
 
-from classes import UNLABELLED
+from classes import IN_BOX, IN_NO_BOX, UNLABELLED
 
 
 class PackError(Exception):
     """What is wrong with a pack or with the data for it, for the person who gave it."""
 
 
+def encoded(image, image_format):
+    return cv2.imencode(image_format[0], image, image_format[1])[1].reshape(-1)
+
+
 class PackWriter:
-    def __init__(self, long_side, quality=90):
-        self.long_side, self.quality = long_side, quality
+    def __init__(self, long_side, quality=90, webp=False):
+        self.long_side = long_side
+        if webp:
+            self.picture_format = ".webp", [cv2.IMWRITE_WEBP_QUALITY, quality]
+            self.label_format = ".webp", [cv2.IMWRITE_WEBP_QUALITY, 101]  # lossless
+        else:
+            self.picture_format = ".jpg", [cv2.IMWRITE_JPEG_QUALITY, quality]
+            self.label_format = ".png", [cv2.IMWRITE_PNG_COMPRESSION, 9]
         self.names, self.pictures, self.labels, self.depths, self.validation = [], [], [], [], []
 
     def add(self, name, picture, labels, validation=False, depth=None):
@@ -34,9 +44,9 @@ class PackWriter:
             labels = cv2.resize(labels, size, interpolation=cv2.INTER_NEAREST_EXACT)
         self.names.append(name)
         self.validation.append(validation)
-        self.pictures.append(cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, self.quality])[1].reshape(-1))
-        self.labels.append(cv2.imencode(".png", labels, [cv2.IMWRITE_PNG_COMPRESSION, 9])[1].reshape(-1))
-        self.depths.append(np.zeros(0, np.uint8) if depth is None else cv2.imencode(".png", depth)[1].reshape(-1))
+        self.pictures.append(encoded(picture, self.picture_format))
+        self.labels.append(encoded(labels, self.label_format))
+        self.depths.append(np.zeros(0, np.uint8) if depth is None else encoded(depth, self.label_format))
 
     def write(self, path, part=0, parts=1):
         """All entries, or every `parts`-th of them from number `part` on."""
@@ -58,7 +68,7 @@ class Entry:
         self.source = name.split("/")[0]
 
     def is_labelled(self):
-        return self.labels[0, 0] != UNLABELLED
+        return self.labels[0, 0] not in (UNLABELLED, IN_BOX, IN_NO_BOX)
 
 
 def read_pack(path, unlabelled=False):

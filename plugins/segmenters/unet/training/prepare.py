@@ -8,7 +8,9 @@ Reads, as far as they are named:
   --simulated DIR   sequences that `holdfast simulate` wrote; DIR itself, or folders in it
   --composed DIR    folders of sequences that benchmarks/tools/compose_people.py wrote from frames of --room
   --further DIR     with images/SOURCE_*.jpg, classes/SOURCE_*.png (pictures without it are for the teacher of
-                    train_gpu.py) and depth/SOURCE_*.png (8 bits for 10 m); its sources replace those of more/
+                    train_gpu.py, to whom boxes/SOURCE_*.txt may say where people are: lines of x, y of the middle,
+                    width, height, as shares of the picture) and depth/SOURCE_*.png (8 bits for 10 m); its sources
+                    replace those of more/
 and writes one .npz, or several parts of it.  Entries that --validation lists (or that its rule chooses, see validation.txt) are marked: they are
 never trained on.
 """
@@ -21,7 +23,7 @@ import sys
 import cv2
 import numpy as np
 
-from classes import IGNORED, NOT_PERSON, PERSON, SIMULATED, UNLABELLED, VOC, relabelled
+from classes import IGNORED, IN_BOX, IN_NO_BOX, NOT_PERSON, PERSON, SIMULATED, UNLABELLED, VOC, relabelled
 from pack import PackError, PackWriter
 
 HERE = pathlib.Path(__file__).parent
@@ -77,12 +79,28 @@ def more_people(folder, source):
         yield path.stem, colour(folder / "images" / f"{path.stem}.jpg"), labels
 
 
+def in_boxes(path, shape):
+    """What a label image says when only boxes of people are known: lines of the middle, width and height, as shares of the picture."""
+    labels = np.full(shape, IN_NO_BOX, np.uint8)
+    for x, y, width, height in np.loadtxt(path, ndmin=2).reshape(-1, 4) if path.stat().st_size else ():
+        corners = np.array([[x - width / 2, y - height / 2], [x + width / 2, y + height / 2]]) * shape[::-1]
+        (left, top), (right, bottom) = corners.round().astype(int).clip(0)
+        labels[top:bottom, left:right] = IN_BOX
+    return labels
+
+
 def further(folder, source):
-    """Labels as in classes.py, or none, and depth, if there is any: (name, picture, labels, depth or None)."""
+    """Labels as in classes.py, or boxes, or none, and depth, if there is any: (name, picture, labels, depth or None)."""
     for path in sorted((folder / "images").glob(f"{source}_*.jpg")):
         picture = colour(path)
-        classes, depth = folder / "classes" / f"{path.stem}.png", folder / "depth" / f"{path.stem}.png"
-        labels = grey(classes) if classes.exists() else np.full(picture.shape[:2], UNLABELLED, np.uint8)
+        classes, boxes, depth = (folder / kind / f"{path.stem}.{end}"
+                                 for kind, end in (("classes", "png"), ("boxes", "txt"), ("depth", "png")))
+        if classes.exists():
+            labels = grey(classes)
+        elif boxes.exists():
+            labels = in_boxes(boxes, picture.shape[:2])
+        else:
+            labels = np.full(picture.shape[:2], UNLABELLED, np.uint8)
         yield path.stem, picture, labels, grey(depth) if depth.exists() else None
 
 
@@ -144,7 +162,8 @@ def main():
     parser.add_argument("--validation", type=pathlib.Path, default=HERE / "validation.txt",
                         help="names of entries to hold out, one a line (default: validation.txt beside this program)")
     parser.add_argument("--long-side", type=int, default=384, help="pictures are shrunk to it [px] (default: 384)")
-    parser.add_argument("--quality", type=int, default=90, help="of the JPEG pictures in the pack (default: 90)")
+    parser.add_argument("--quality", type=int, default=90, help="of the pictures in the pack (default: 90)")
+    parser.add_argument("--webp", action="store_true", help="pictures as WebP, half as large as JPEG of the same quality")
     parser.add_argument("--parts", type=int, default=1,
                         help="splits the pack into as many files, OUTPUT.0.npz and so on (default: 1, OUTPUT itself)")
     parser.add_argument("--output", type=pathlib.Path, required=True, help="the pack, .npz")
@@ -173,7 +192,7 @@ def main():
     if not readers:
         parser.error("nothing to pack; name --people, --room, --simulated or --further")
 
-    writer = PackWriter(arguments.long_side, arguments.quality)
+    writer = PackWriter(arguments.long_side, arguments.quality, arguments.webp)
     for source, reader, folder in readers:
         if not folder.is_dir():
             raise PackError(f"{folder}: is no folder; expected the data of '{source}'")

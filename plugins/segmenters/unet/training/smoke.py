@@ -16,8 +16,10 @@ import cv2
 import numpy as np
 import torch
 
+from classes import IGNORED, IN_BOX, IN_NO_BOX, NOT_PERSON, PERSON, UNLABELLED
 from measure import found_labels
 from pack import PackError, read_pack
+from teacher import labels_of
 from weights import in_order, load_onnx, load_weights, with_normalisation
 
 HERE = pathlib.Path(__file__).parent
@@ -42,6 +44,27 @@ def check_scores(folder, onnx, model, pictures):
     if not difference < 1e-3:
         raise PackError(f"{changed}: twice its scores differ by {difference} from those of weights.npz with the offsets; "
                         "expected the same")
+
+
+def check_boxes(folder):
+    """Boxes of people reach a pack, with pictures as WebP, and decide what becomes of a teacher's probabilities."""
+    for kind in ("images", "boxes"):
+        (folder / "further" / kind).mkdir(parents=True, exist_ok=True)
+    cv2.imwrite(str(folder / "further" / "images" / "boxed_1.jpg"), np.full((40, 80, 3), 100, np.uint8))
+    (folder / "further" / "boxes" / "boxed_1.txt").write_text("0.25 0.5 0.5 1\n")
+    run("prepare.py", "--further", folder / "further", "--webp", "--output", folder / "boxed.npz")
+    entry = read_pack(folder / "boxed.npz", unlabelled=True)[0][0]
+    hints = np.where(np.arange(80) < 40, IN_BOX, IN_NO_BOX)[None].repeat(40, 0)
+    if not np.array_equal(entry.labels, hints) or entry.is_labelled():
+        raise PackError("a box over the left half of a picture came back as other labels; expected the box")
+    cases = [(0.6, IN_BOX, PERSON), (0.6, IN_NO_BOX, IGNORED), (0.2, IN_NO_BOX, NOT_PERSON), (0.01, IN_NO_BOX, 0), (0.01, IN_BOX, IGNORED),
+             (0.6, UNLABELLED, IGNORED), (0.75, UNLABELLED, PERSON), (0.2, UNLABELLED, IGNORED)]
+    for chance, hint, expected in cases:
+        probability = torch.zeros(1, 5, 20, 20)
+        probability[:, PERSON], probability[:, 0] = chance, 1.0 - chance
+        found = labels_of(probability, torch.full((1, 20, 20), hint, dtype=torch.uint8))
+        if not bool((found == expected).all()):
+            raise PackError(f"a person's probability of {chance} where the label says {hint} became {found[0, 10, 10]}; expected {expected}")
 
 
 def check_kept_blocks(folder, pack):
@@ -106,8 +129,9 @@ def main():
             "--height", 64, "--steps", 2)
         run("export.py", folder / "weights.npz", folder / "unet.onnx")
     check_kept_blocks(arguments.output, pack)
+    check_boxes(arguments.output)
     run("train_gpu.py", pack, "--output", arguments.output / "gpu", "--device", "cpu", "--batch", 2, "--steps", 2, "--sizes", "64x64",
-        "--start-from", arguments.output / "mobile" / "weights.npz")
+        "--furniture-dice", 0.1, "--start-from", arguments.output / "mobile" / "weights.npz")
     run("average.py", arguments.output / "mobile" / "unet.onnx", arguments.output / "gpu" / "weights.npz", pack, "--output",
         arguments.output / "average.npz", "--pictures", 4, "--width", 64, "--height", 64)
     load_weights(arguments.output / "average.npz")

@@ -11,7 +11,7 @@ import torch
 from torch import nn
 from torch.nn import functional
 
-from classes import CLASSES, IGNORED, PERSON, VOC
+from classes import CLASSES, IGNORED, IN_BOX, IN_NO_BOX, NOT_PERSON, PERSON, VOC
 from pack import PackError
 from pretrained import CONV_2D, DEPTHWISE_CONV_2D, Table, real_numbers
 
@@ -97,14 +97,30 @@ def probabilities(teacher, pictures, size):
     return 0.5 * (torch.softmax(scores[0], 1) + torch.softmax(scores[1], 1))
 
 
-def labels_of(probability, sure=0.8, possible=0.06):
-    """Labels of a teacher's probabilities (N x 21 x H x W): a class where it is sure; background where every class of ours
-    is improbable; otherwise nobody's."""
+def own_classes(probability):
+    """Of the classes of ours, background first, from those of VOC (N x 21 x H x W)."""
     ours = torch.zeros_like(probability[:, :len(CLASSES)])
     for voc, label in VOC.items():
         if voc != IGNORED and label < len(CLASSES):
             ours[:, label] = probability[:, voc]
-    best, label = ours[:, 1:].max(1)
+    ours[:, 0] = 1.0 - ours[:, 1:].sum(1)
+    return ours
+
+
+def labels_of(probability, hints, sure=(1.0, 0.7, 0.5, 0.5, 0.5), possible=0.08, near=0.06):
+    """Labels of probabilities (N x classes x H x W): a class where it is sure; background where every class of ours is
+    improbable; otherwise nobody's.  `hints` (N x H x W): what is known of boxes of people.  In a box a person is likely, and
+    background is believed only `near` (share of the width) a person that was found, elsewhere the box is nobody's; in none a
+    person is not believed, and where one is unlikely, nothing that is unsure is a person."""
+    best, label = probability[:, 1:].max(1)
+    person, label = probability[:, PERSON], label + 1
     labels = torch.full_like(label, IGNORED)
     labels[best < possible] = 0
-    return torch.where(best > torch.where(label + 1 == PERSON, sure, 0.7), label + 1, labels).to(torch.uint8)
+    labels = torch.where(best > torch.tensor(sure, device=best.device)[label], label, labels)
+    in_box, in_none = hints == IN_BOX, hints == IN_NO_BOX
+    reach = max(1, round(near * person.shape[2]))
+    found = functional.max_pool2d(functional.avg_pool2d(person[:, None], 3, 1, 1), 2 * reach + 1, 1, reach)[:, 0] > 0.5
+    labels = torch.where(in_box & (labels == 0) & ~found, IGNORED, labels)
+    labels = torch.where(in_box & (person > 0.5), PERSON, labels)
+    labels = torch.where(in_none & (person < 0.3) & (labels == IGNORED), NOT_PERSON, labels)
+    return torch.where(in_none & (person >= 0.3), IGNORED, labels).to(torch.uint8)

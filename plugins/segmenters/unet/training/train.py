@@ -40,12 +40,14 @@ PRESETS = {
 }
 
 
-def soft_dice(scores, labels):
-    """1 - dice coefficient of the person, pixels of a batch together."""
-    known = (labels != IGNORED).float()
-    person = (labels == PERSON).float() * known
-    probability = torch.softmax(scores, 1)[:, PERSON] * known
-    return 1.0 - (2.0 * (probability * person).sum() + 1.0) / (probability.sum() + person.sum() + 1.0)
+def soft_dice(scores, labels, label=PERSON):
+    """1 - dice coefficient of a class, pixels of a batch together."""
+    known = labels != IGNORED
+    if label != PERSON:
+        known = known & (labels != NOT_PERSON)
+    own = ((labels == label) & known).float()
+    probability = torch.softmax(scores, 1)[:, label] * known.float()
+    return 1.0 - (2.0 * (probability * own).sum() + 1.0) / (probability.sum() + own.sum() + 1.0)
 
 
 def class_loss(scores, labels, class_weights):
@@ -60,10 +62,12 @@ def class_loss(scores, labels, class_weights):
     return loss
 
 
-def training_loss(outputs, labels, class_weights, coarse_share):
+def training_loss(outputs, labels, class_weights, coarse_share, furniture_dice=0.0):
     fine = functional.interpolate(outputs[0], size=labels.shape[1:], mode="bilinear", align_corners=False)
     own_labels = torch.where(is_other_thing(labels), 0, labels)
     loss = class_loss(fine, own_labels, class_weights) + 0.5 * soft_dice(fine, own_labels)
+    for label in range(PERSON + 1, len(CLASSES)) if furniture_dice else ():
+        loss = loss + furniture_dice * soft_dice(fine, own_labels, label)
     told_apart = torch.cat([class_weights, class_weights.new_ones(TOLD_APART - len(CLASSES))])
     for scores in outputs[1:] if coarse_share else []:
         step = labels.shape[1] // scores.shape[2]

@@ -33,7 +33,7 @@ from pack import PackError, read_pack
 from photographs import resized
 from pretrained import load_encoder
 from samples import DEVIATION, MEAN, to_tensor
-from teacher import SIDE, Teacher, labels_of, probabilities
+from teacher import SIDE, Teacher, labels_of, own_classes, probabilities
 from train import Log, learning_rate, size_of, training_loss
 from weights import in_order, load_onnx, load_weights, save_weights, with_normalisation
 
@@ -42,22 +42,36 @@ def stretched(planes, size):
     return functional.interpolate(planes, size=size, mode="bilinear", align_corners=False)
 
 
-def teach(store, path, batch=32):
-    """Labels of pictures without labels, where the teacher is sure, in place; returns how many pictures there are."""
+def student_probabilities(student, pictures, size, input_size):
+    """Of our classes, by a network of ours; mean over the pictures (0 to 1, N x 3 x H x W) and their mirror images."""
+    width, height = input_size
+    inputs = (stretched(pictures, (height, width)) - MEAN) / DEVIATION
+    scores = [student(inputs).float(), student(inputs.flip(3)).float().flip(3)]
+    return 0.5 * sum(torch.softmax(stretched(x, size), 1) for x in scores)
+
+
+def teach(store, path, student_path, input_size, batch=32):
+    """Labels of pictures without labels, where the teacher is sure, in place; with a student (an earlier network of ours), where both
+    are in the mean.  Returns how many pictures there are."""
     unlabelled = [i for i, entry in enumerate(store.entries) if not entry.is_labelled()]
     if not unlabelled:
         return 0
     if path is None:
         raise PackError(f"the packs hold {len(unlabelled)} pictures without labels; name a --teacher for them")
     teacher = Teacher(path).to(store.device).eval()
+    student = load_onnx(student_path).to(store.device).eval() if student_path else None
+    size = (SIDE // 2, SIDE // 2)
     for start in range(0, len(unlabelled), batch):
         chosen = unlabelled[start:start + batch]
         inputs = torch.cat([stretched(store.picture(i), (SIDE, SIDE)) for i in chosen])
         with torch.no_grad(), torch.autocast(store.device.type, torch.bfloat16):
-            found = probabilities(teacher, inputs, (SIDE // 2, SIDE // 2))
+            found = own_classes(probabilities(teacher, inputs, size))
+            if student:
+                found = 0.5 * (found + student_probabilities(student, inputs, size, input_size))
         for i, probability in zip(chosen, found):
             height, width = store.entries[i].labels.shape
-            store.labels[i, :height, :width] = labels_of(stretched(probability[None], (height, width)))[0]
+            hints = store.labels[i:i + 1, :height, :width]
+            store.labels[i, :height, :width] = labels_of(stretched(probability[None].float(), (height, width)), hints)[0]
     return len(unlabelled)
 
 
@@ -192,7 +206,8 @@ def step(model, optimizer, samples, arguments, size, rates, class_weights, devic
     optimizer.zero_grad(set_to_none=True)
     with torch.autocast(device.type, torch.bfloat16):
         outputs = model(pictures.contiguous())
-    loss = training_loss([scores.float() for scores in outputs], labels, class_weights, arguments.coarse_share)
+    loss = training_loss([scores.float() for scores in outputs], labels, class_weights, arguments.coarse_share,
+                         arguments.furniture_dice)
     loss.backward()
     torch.nn.utils.clip_grad_norm_(model.parameters(), 5.0)
     optimizer.step()
@@ -214,7 +229,7 @@ def train(arguments):
         entries, held_out = entries + some, held_out + others
     say(f"{len(entries)} pictures, {len(held_out)} held out")
     store = Store(entries, device)
-    taught = teach(store, arguments.teacher)
+    taught = teach(store, arguments.teacher, arguments.student, max(arguments.sizes))
     people = Cutouts(entries, device)
     say(f"{taught} of them labelled by the teacher, {people.count} people cut out, squares of {store.side} px")
     samples = DeviceSamples(store, people, arguments.whole)
@@ -274,6 +289,8 @@ def main():
     parser.add_argument("--encoder-from", type=pathlib.Path,
                         help="begin with this file's contracting path (that of the --teacher, say, which has seen COCO)")
     parser.add_argument("--teacher", type=pathlib.Path, help="deeplabv3_mnv2_pascal_quant.tflite, for pictures without labels")
+    parser.add_argument("--student", type=pathlib.Path,
+                        help="unet.onnx that labels these pictures too: what the mean of both is sure of is taught")
     length = parser.add_mutually_exclusive_group()
     length.add_argument("--minutes", type=float, default=9.0, help="of training, all else comes on top (default: 9)")
     length.add_argument("--steps", type=int)
@@ -289,6 +306,8 @@ def main():
     parser.add_argument("--average", type=float, default=0.998, help="what a step leaves of the running mean (default: 0.998)")
     parser.add_argument("--class-weights", type=float, nargs=5, default=[1.0, 1.0, 1.5, 1.5, 1.5],
                         help="in the loss: background, person, chair, table, tv")
+    parser.add_argument("--furniture-dice", type=float, default=0.0, metavar="WEIGHT",
+                        help="in the loss, of the soft Dice loss of each of chair, table and tv; a person's is 0.5 (default: 0)")
     parser.add_argument("--coarse-share", type=float, default=0.1, help="weight in the loss of each of the coarse heads")
     parser.add_argument("--whole", type=float, default=0.4, help="how often a picture is shown whole (default: 0.4)")
     parser.add_argument("--seed", type=int, default=1)
