@@ -102,6 +102,15 @@ class Listener:
             time.sleep(0.2)
         raise AssertionError("the bag did not end")
 
+    def wait_for_poses(self, silence=3.0, most=60.0):
+        """Until poses came and then none for some time."""
+        end = time.monotonic() + most
+        while time.monotonic() < end:
+            with self.lock:
+                if self.poses and time.monotonic() - max(came for came, _ in self.poses.values()) > silence:
+                    return
+            time.sleep(0.2)
+
     def clear(self):
         with self.lock:
             self.arrivals, self.poses, self.odometry, self.transforms = {}, {}, {}, {}
@@ -274,6 +283,37 @@ def check_services(checks, listener, holdfast, work, bag, expected):
     checks.expect(bool(call("/holdfast/reset").success), "reset")
 
 
+def launch_node(bag, work, name, *arguments):
+    command = ["roslaunch", "holdfast_ros", "holdfast.launch", f"bag:={bag}", f"colour:={write_bag.COLOUR}", f"depth:={write_bag.DEPTH}"]
+    command += [f"camera_info:={write_bag.INFO}", f"imu:={write_bag.DEPTH_INFO}_none", "set:=['camera=tum_fr1']"]
+    command += [f"map_file:={work / 'map.hfm'}", f"params:={work / 'params.yaml'}", *arguments]
+    return start(command, work / f"{name}.log")
+
+
+def check_compressed(checks, listener, recording, work, expected, frames=90):
+    """The same, with images that image_transport compressed: a new node, whose map begins with the first frame."""
+    bag = work / "compressed.bag"
+    write_bag.write_bag(recording, bag, frames, is_compressed=True)
+    listener.clear()
+    launch = launch_node(bag, work, "launch_compressed", "compressed:=true")
+    try:
+        listener.wait_for_poses()
+    finally:
+        stop(launch)
+        bag.unlink()
+    R = map_of_world()[:3, :3]
+    distances = []
+    for stamp, (_, message) in listener.poses.items():
+        p = message.pose.pose.position
+        if round(stamp / 1000) in expected:
+            distances.append(numpy.linalg.norm([p.x, p.y, p.z] - R @ expected[round(stamp / 1000)]))
+    checks.expect(
+        len(distances) > 0.8 * frames and max(distances) < BAR_DISTANCE,
+        f"compressed images: {len(distances)} poses of {frames} frames, at most {max(distances, default=numpy.inf):.4f} m from "
+        "`holdfast run`",
+    )
+
+
 def run(holdfast, packages, configuration, work, frames):
     recording = pathlib.Path(os.environ["HOLDFAST_DATA"]) / "tum_fr1_xyz"
     bag = work / "fr1_xyz.bag"
@@ -308,12 +348,7 @@ def run(holdfast, packages, configuration, work, frames):
             time.sleep(0.2)
         rospy.init_node("checker", disable_signals=True)
         listener = Listener()
-        launch = start(
-            ["roslaunch", "holdfast_ros", "holdfast.launch", f"bag:={bag}", f"colour:={write_bag.COLOUR}", f"depth:={write_bag.DEPTH}",
-             f"camera_info:={write_bag.INFO}", f"imu:={write_bag.DEPTH_INFO}_none", "set:=['camera=tum_fr1']",
-             f"map_file:={work / 'map.hfm'}", f"params:={work / 'params.yaml'}"],
-            work / "launch.log",
-        )
+        launch = launch_node(bag, work, "launch")
         listener.wait_for_end()
         time.sleep(2)  # the last grid
         check_transforms(checks, listener, expected)
@@ -323,6 +358,8 @@ def run(holdfast, packages, configuration, work, frames):
         check_topics(checks, listener)
         check_services(checks, listener, holdfast, work, bag, expected)
         checks.expect(launch.poll() is None, "the node still runs")
+        stop(launch)
+        check_compressed(checks, listener, recording, work, expected)
     finally:
         if launch:
             stop(launch)

@@ -9,7 +9,7 @@ import sys
 import cv2
 import genpy
 import rosbag
-from sensor_msgs.msg import CameraInfo, Image
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
 COLOUR, DEPTH, INFO = "/camera/rgb/image_color", "/camera/depth/image", "/camera/rgb/camera_info"
 # Small messages beside the depth images, which say when these were published.
@@ -37,6 +37,16 @@ def image_message(pixels, encoding, stamp):
     return message
 
 
+def compressed_message(topic, file, stamp):
+    """The bytes of the PNG file, as image_transport publishes images: depth after 12 bytes of settings."""
+    message = CompressedImage()
+    message.header.stamp, message.header.frame_id = stamp, FRAME
+    is_colour = topic == COLOUR
+    message.format = "rgb8; png compressed bgr8" if is_colour else "16UC1; compressedDepth png"
+    message.data = (b"" if is_colour else bytes(12)) + file.read_bytes()
+    return message
+
+
 def info_message(stamp):
     """The default of the driver, as in the bags of TUM."""
     message = CameraInfo()
@@ -58,8 +68,8 @@ def count_frames(colours, depths, most=0.02):
     return len(used) // 2
 
 
-def write_bag(recording, bag_file, frames=None):
-    """Colour as rgb8 and depth as 16UC1 with 5000 for a metre. Returns the number of frames, by the rule of TUM: images are
+def write_bag(recording, bag_file, frames=None, is_compressed=False):
+    """Colour as rgb8 and depth as 16UC1 with 5000 for a metre, or both compressed. Returns the number of frames, by the rule of TUM: images are
     paired one to one, nearest first, within 20 ms."""
     colours, depths = read_list(recording / "rgb.txt")[:frames], read_list(recording / "depth.txt")
     last = float(colours[-1][0])
@@ -68,11 +78,15 @@ def write_bag(recording, bag_file, frames=None):
     with rosbag.Bag(str(bag_file), "w") as bag:
         for _, text, name, topic in sorted(images):
             stamp = time_of(text)
+            bag.write(INFO if topic == COLOUR else DEPTH_INFO, info_message(stamp), stamp)
+            if is_compressed:
+                transport = "/compressed" if topic == COLOUR else "/compressedDepth"
+                bag.write(topic + transport, compressed_message(topic, recording / name, stamp), stamp)
+                continue
             pixels = cv2.imread(str(recording / name), cv2.IMREAD_COLOR if topic == COLOUR else cv2.IMREAD_UNCHANGED)
             if topic == COLOUR:
                 pixels = cv2.cvtColor(pixels, cv2.COLOR_BGR2RGB)
             bag.write(topic, image_message(pixels, "rgb8" if topic == COLOUR else "16UC1", stamp), stamp)
-            bag.write(INFO if topic == COLOUR else DEPTH_INFO, info_message(stamp), stamp)
     return count_frames([float(stamp) for stamp, _ in colours], [float(stamp) for stamp, _ in depths])
 
 
