@@ -272,11 +272,7 @@ const KeptView* KeyframeFlow::keep_view(KeyFrameId keyframe, const SensorFrame& 
 }
 
 void KeyframeFlow::keep_carving_view(const Frame& frame, const FrameResult& result) {
-  if (resting_) {
-    // Poses of another submap, or from before a jump, place things elsewhere.
-    if (result.status == TrackingStatus::initialised || result.method == TrackingMethod::recovered) resting_->clear();
-    if (result.status == TrackingStatus::tracked) resting_->add(frame, result.is_keyframe);
-  }
+  if (resting_) resting_->add(frame, result);
   if (!carving_) return;
   if (result.is_keyframe) return carving_->keyframe_kept(frame.timestamp);
   if (result.status != TrackingStatus::tracked || result.fallback != TrackingFallback::none) return;

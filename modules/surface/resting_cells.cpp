@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "holdfast/core/after_loss.hpp"
 #include "holdfast/core/depth_noise.hpp"
 
 namespace holdfast {
@@ -28,9 +29,10 @@ void release(const View& view, std::size_t cell, std::vector<float>& log_odds) {
 
 }  // namespace
 
-void RestingCells::add(const Frame& frame, bool is_keyframe) {
-  if (frame.coarse.empty()) return;
-  if (!views_.empty() && !is_keyframe && frame.timestamp - views_.back().timestamp < interval) return;
+void RestingCells::add(const Frame& frame, const FrameResult& result) {
+  if (result.status == TrackingStatus::initialised || is_after_loss(result.method)) clear();
+  if (result.status != TrackingStatus::tracked || frame.coarse.empty()) return;
+  if (!views_.empty() && !result.is_keyframe && frame.timestamp - views_.back().timestamp < interval) return;
   views_.push_back(
       {frame.index, frame.timestamp, frame.camera, frame.coarse.grid, frame.T_view_world(), frame.coarse.depth});
   while (views_.front().timestamp < frame.timestamp - time_ - late_masks) views_.pop_front();

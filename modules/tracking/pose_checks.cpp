@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/tracking/pose_checks.hpp"
 
+#include "holdfast/core/after_loss.hpp"
 #include "holdfast/tracking/inertia.hpp"
 
 namespace holdfast {
@@ -47,7 +48,7 @@ bool PoseChecks::is_refuted(int inliers, bool was_lost) const {
 }
 
 bool PoseChecks::accepts(const FrameResult& result, const PoseSituation& situation) const {
-  const bool was_lost = result.method == TrackingMethod::recovered || result.method == TrackingMethod::relocalised;
+  const bool was_lost = is_after_loss(result.method);
   // A wide search finds some agreement anywhere: twice as many have to agree.
   const int required = (was_lost ? 2 : 1) * context_.settings.minimum_inliers;
   if (result.inliers < required) return false;

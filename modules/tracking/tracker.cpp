@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "holdfast/core/after_loss.hpp"
 #include "holdfast/geometry/se3.hpp"
 
 namespace holdfast {
@@ -187,8 +188,7 @@ void Tracker::follow_inertia(FrameResult& result) {
     context_.inertia.bridged(T_camera_world);
   } else {
     // Found by the map alone after a bridge that drifted.
-    if (result.method == TrackingMethod::recovered && context_.inertia.contradicts(T_camera_world, 1.0))
-      context_.inertia.relocated();
+    if (is_after_loss(result.method) && context_.inertia.contradicts(T_camera_world, 1.0)) context_.inertia.relocated();
     const auto past_pose = [this](double timestamp) -> std::optional<Eigen::Isometry3d> {
       const auto pose = context_.history.past_pose(timestamp, context_.map);
       return pose ? std::optional(pose->T_camera_world) : std::nullopt;

@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "holdfast/core/after_loss.hpp"
 #include "holdfast/core/health_reason_names.hpp"
 #include "holdfast/core/version.hpp"
 
@@ -44,7 +45,7 @@ int status_number(TrackingStatus status, TrackingMethod method) {
   if (status == TrackingStatus::initialised) return 1;
   if (status == TrackingStatus::lost) return 3;
   if (status == TrackingStatus::inertial) return 5;
-  return method == TrackingMethod::relocalised || method == TrackingMethod::recovered ? 4 : 2;
+  return is_after_loss(method) ? 4 : 2;
 }
 
 }  // namespace

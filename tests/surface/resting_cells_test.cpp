@@ -14,6 +14,13 @@ class RestingCellsTest : public testing::Test {
  protected:
   RestingCellsTest() : camera_(std::make_shared<Camera>()), grid_(CoarseSampler(*camera_).grid()) {}
 
+  static FrameResult tracked(bool is_keyframe = false) {
+    FrameResult result;
+    result.status = TrackingStatus::tracked;
+    result.method = TrackingMethod::motion_model;
+    result.is_keyframe = is_keyframe;
+    return result;
+  }
   /// `left`: edge of the board, which is 0.6 m wide [m].
   Frame frame(std::uint64_t index, double left) const {
     Frame frame;
@@ -42,7 +49,7 @@ class RestingCellsTest : public testing::Test {
   template <class Place>
   double released_share(const Place& left_at, std::uint64_t frames) const {
     RestingCells cells(2.0);
-    for (std::uint64_t i = 0; i < frames; ++i) cells.add(frame(i, left_at(i)), i + 1 == frames);
+    for (std::uint64_t i = 0; i < frames; ++i) cells.add(frame(i, left_at(i)), tracked(i + 1 == frames));
     const Frame last = frame(frames - 1, left_at(frames - 1));
     const std::vector<float> before = moving_board(last, left_at(frames - 1)),
                              after = cells.released(frames - 1, before);
@@ -79,7 +86,7 @@ TEST_F(RestingCellsTest, ReleasesNothingThatMovesOrIsNew) {
 
 TEST_F(RestingCellsTest, KnowsOnlyFramesThatItHas) {
   RestingCells cells(2.0);
-  for (std::uint64_t i = 0; i < 60; ++i) cells.add(frame(i, 0.1), false);
+  for (std::uint64_t i = 0; i < 60; ++i) cells.add(frame(i, 0.1), tracked());
   const std::vector<float> log_odds = moving_board(frame(59, 0.1), 0.1);
   EXPECT_EQ(cells.released(59, log_odds), log_odds) << "between two that are kept";
   EXPECT_NE(cells.released(58, log_odds), log_odds);
@@ -87,6 +94,27 @@ TEST_F(RestingCellsTest, KnowsOnlyFramesThatItHas) {
   EXPECT_EQ(cells.released(58, {}), std::vector<float>());
   cells.clear();
   EXPECT_EQ(cells.released(58, log_odds), log_odds);
+}
+
+TEST_F(RestingCellsTest, ForgetsPosesOfAnotherMapAndOfBeforeALoss) {
+  const std::vector<float> log_odds = moving_board(frame(58, 0.1), 0.1);
+  const auto is_released_after = [&](std::uint64_t at, const FrameResult& event) {
+    RestingCells cells(2.0);
+    for (std::uint64_t i = 0; i < 60; ++i) cells.add(frame(i, 0.1), i == at ? event : tracked(true));
+    return cells.released(58, log_odds) != log_odds;
+  };
+  FrameResult event = tracked();
+  EXPECT_TRUE(is_released_after(50, event));
+  for (const TrackingMethod method : {TrackingMethod::recovered, TrackingMethod::relocalised}) {
+    event.method = method;
+    EXPECT_FALSE(is_released_after(50, event)) << to_string(method);
+    EXPECT_TRUE(is_released_after(30, event)) << "long enough ago";
+  }
+  event.status = TrackingStatus::initialised;
+  EXPECT_FALSE(is_released_after(50, event));
+  event.status = TrackingStatus::lost;
+  event.method = TrackingMethod::none;
+  EXPECT_TRUE(is_released_after(50, event)) << "the map is the same";
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "holdfast/core/camera.hpp"
 #include "holdfast/core/frame.hpp"
+#include "holdfast/core/frame_result.hpp"
 
 namespace holdfast {
 
@@ -22,8 +23,9 @@ class RestingCells {
   /// `time`: duration after which something at rest counts as part of the room [s].
   explicit RestingCells(double time) : time_(time) {}
 
-  /// Adds a tracked frame with depth; frames less than 0.2 s after the last one are left out unless `is_keyframe`.
-  void add(const Frame& frame, bool is_keyframe);
+  /// Adds a tracked frame with depth; frames less than 0.2 s after the last one are left out unless they are keyframes.
+  /// A pose in a new map or submap, or after a loss, places things elsewhere than those before: it clears these.
+  void add(const Frame& frame, const FrameResult& result);
   /// Forgets all frames: their poses are of another map.
   void clear() { views_.clear(); }
 
