@@ -185,13 +185,14 @@ TEST_F(RealsenseBagTest, RefusesWhatCannotBeRegistered) {
   EXPECT_FALSE(open(recorded, {{"depth", "none"}})->next()->depth.data) << "colour alone";
 }
 
-/// Colour has fewer pixels: a pixel of depth goes to the one that its centre lies in.
+/// Colour has fewer pixels: a pixel of depth goes to the one in which its centre lies.
 TEST(DepthRegistration, RoundsToTheNearestPixelOfFewer) {
   Camera depth_camera, colour_camera;
   depth_camera.width = 64, depth_camera.height = 48;
   depth_camera.fx = depth_camera.fy = 64, depth_camera.cx = 31.5, depth_camera.cy = 23.5;
   colour_camera.width = 32, colour_camera.height = 24;
-  colour_camera.fx = colour_camera.fy = 32, colour_camera.cx = 15.5, colour_camera.cy = 11.5;
+  colour_camera.fx = colour_camera.fy = 32, colour_camera.cx = 15.7,
+  colour_camera.cy = 11.7;  // columns 2k and 2k + 1 are k - 0.05, k + 0.45
   const rosbag_plugin::DepthRegistration registration(depth_camera, colour_camera, Eigen::Isometry3d::Identity());
   for (int x = 0; x < 64; ++x) {
     cv::Mat depth(48, 64, CV_32FC1, cv::Scalar(0.0));
