@@ -36,6 +36,7 @@ packages="
   libeigen3-dev libopencv-dev libceres-dev libflann-dev liblz4-dev libbz2-dev libzstd-dev libsqlite3-dev
   libdeflate-dev libjpeg-dev libopenexr-dev libdnnl-dev libboost-dev libyaml-cpp-dev libcli11-dev nlohmann-json3-dev
   libgtest-dev libgmock-dev"
+basic=" $(echo $packages) "
 
 say() { printf 'install_dependencies: %s\n' "$*"; }
 fail() { say "$@" >&2; exit 1; }
@@ -100,15 +101,29 @@ if [ "$wants_onnxruntime" = yes ]; then
   fi
 fi
 
+# Ubuntu 22.04 has no libclang-rt-dev, whose files are in what clang needs. Nothing is known before the lists of packages
+# were fetched, so that clang is the proof of them.
+needs_no_clang_rt() { [ -n "$(apt-cache madison clang 2>/dev/null)" ] && [ -z "$(apt-cache madison libclang-rt-dev 2>/dev/null)" ]; }
+
 missing=""
 for package in $packages; do
   status=$(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null || true)
-  [ "$status" = installed ] || missing="$missing $package"
+  [ "$status" = installed ] && continue
+  if [ "$package" = libclang-rt-dev ] && needs_no_clang_rt; then continue; fi
+  missing="$missing $package"
 done
 missing=${missing# }
 
+say_if_cmake_is_old() {
+  cmake=$(dpkg-query --show --showformat='${Version}' cmake 2>/dev/null || true)
+  if [ -n "$cmake" ] && dpkg --compare-versions "$cmake" lt 3.25; then
+    say "CMake $cmake of this system is too old for Holdfast, which needs 3.25; docs/install.md#ubuntu-2204 says how to get one"
+  fi
+}
+
 [ "$wants_onnxruntime" = no ] || from_npm=" onnxruntime-node@$onnxruntime (npm)"
 if [ -z "$missing${from_npm:-}" ]; then
+  say_if_cmake_is_old
   say "everything is installed"
   exit 0
 fi
@@ -128,21 +143,28 @@ else
   exit 1
 fi
 
-# Takes what this system has no package of out of $missing, or fails and says what to do without it: Ubuntu 22.04 has no
-# libclang-rt-dev, whose files are in what clang needs; Ubuntu has no browser outside of snaps; Ubuntu 24.04 and Debian 13
-# have no ROS 1, and Ubuntu 24.04 has no python3-torch.
+# Fails where this system has no package, and says what to do without it: Ubuntu has no browser outside of snaps; Ubuntu
+# 24.04 and Debian 13 have no ROS 1, and Ubuntu 24.04 has no python3-torch.
 leave_out_absent() {
-  present="" absent=""
+  present="" absent="" absent_basic=""
   for package in $missing; do
     case $(LC_ALL=C apt-cache policy "$package" 2>/dev/null | sed -n 's/^  Candidate: //p') in
-      "" | "(none)") [ "$package" = libclang-rt-dev ] || absent="$absent $package" ;;
+      "" | "(none)")
+        if [ "$package" = libclang-rt-dev ] && needs_no_clang_rt; then continue; fi
+        case "$basic" in
+          *" $package "*) absent_basic="$absent_basic $package" ;;
+          *) absent="$absent $package" ;;
+        esac
+        ;;
       *) present="$present $package" ;;
     esac
   done
   missing=${present# }
+  [ -z "$absent_basic" ] || fail "this system has no package of:$absent_basic, which Holdfast is built from. Are all package sources" \
+    "switched on (Ubuntu: universe), and is the system known (docs/install.md#versions)? The others are: ${missing:-none}"
   [ -z "$absent" ] && return
   fail "this system has no package of:$absent. Leave out the option that asks for them (docs/install.md#ubuntu), or install" \
-    "them from elsewhere. The others are: $missing"
+    "them from elsewhere. The others are: ${missing:-none}"
 }
 
 # `env` because sudo does not pass variables on.
@@ -173,8 +195,5 @@ install_onnxruntime() {
   has_onnxruntime || fail "/usr/local/lib/libonnxruntime.so.$onnxruntime is not known to the dynamic loader"
 }
 [ "$wants_onnxruntime" = no ] || install_onnxruntime
-cmake=$(dpkg-query --show --showformat='${Version}' cmake 2>/dev/null || true)
-if [ -n "$cmake" ] && dpkg --compare-versions "$cmake" lt 3.25; then
-  say "CMake $cmake of this system is too old for Holdfast, which needs 3.25; docs/install.md#ubuntu-2204 says how to get one"
-fi
+say_if_cmake_is_old
 say "done"

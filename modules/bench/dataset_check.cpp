@@ -5,6 +5,7 @@
 #include <functional>
 #include <set>
 
+#include "file_signature.hpp"
 #include "holdfast/core/folder_name.hpp"
 #include "holdfast/core/size_text.hpp"
 #include "holdfast/core/trajectory.hpp"
@@ -100,6 +101,8 @@ class Checker {
   }
 
  private:
+  using Decode = std::function<void(const fs::path&)>;
+
   void fact(const std::string& text) { check_.facts.push_back(text); }
   void problem(const std::string& text) { check_.problems.push_back(text); }
 
@@ -160,32 +163,7 @@ class Checker {
          (recording.colour_is_video ? "the size of its video" : size_text(camera.width, camera.height)) +
          (recording.has_right ? ", baseline " + fixed_text(camera.baseline, 3) + " m" : "") +
          (recording.rectification ? ", to be rectified" : ""));
-    using Decode = std::function<void(const fs::path&)>;  // none: a file that is no PNG or JPEG image
-    const auto check_side = [&](const cv::Size& size, const char* side, fs::path ImageFiles::*member,
-                                SourceLocation ImageFiles::*listed_at, const Decode& decode) {
-      std::vector<ListedImage> images;
-      for (const ImageFiles& files : recording.files)
-        images.push_back(
-            {files.timestamp, (files.*member).lexically_relative(folder_).string(), (files.*listed_at).line});
-      size_ = size;
-      camera_ = std::string("of the ") + side + " camera";
-      const std::string list = std::string("the ") + side + " camera";
-      check_presence(list, images);
-      if (!decode) return;
-      check_ends(list, images);
-      check_images(images, decode);
-    };
-    const Decode grey = [&](const fs::path& file) { decoder_.read_grey(file); };
-    const char* first = recording.depth ? "colour" : "left";
-    check_side(recording.left_size, first, &ImageFiles::colour, &ImageFiles::colour_listed_at,
-               recording.colour_is_video ? Decode() : grey);
-    if (recording.has_right)
-      check_side(recording.right_size, "right", &ImageFiles::right, &ImageFiles::right_listed_at, grey);
-    const bool has_png_depth = recording.depth && recording.files.front().depth.extension() == ".png";
-    if (recording.depth)
-      check_side(recording.scales_depth ? cv::Size() : recording.left_size, "depth", &ImageFiles::depth,
-                 &ImageFiles::depth_listed_at,
-                 has_png_depth ? [&](const fs::path& file) { decoder_.read_depth(file, *recording.depth); } : Decode());
+    check_sides(recording);
     std::vector<double> stamps;
     for (const ImageFiles& files : recording.files) stamps.push_back(files.timestamp);
     check_imu(recording.imu_file, recording.imu, stamps);
@@ -195,6 +173,75 @@ class Checker {
     }
     stamps_ = stamps;
     check_coverage("the truth", recording.truth);
+  }
+
+  void check_sides(const CalibratedRecording& recording) {
+    const Decode grey = [&](const fs::path& file) { decoder_.read_grey(file); };
+    const std::string first = recording.depth ? "the colour camera" : "the left camera";
+    if (recording.colour_is_video)
+      check_video(recording.files.front().colour);
+    else
+      check_side(recording, {first, first, &ImageFiles::colour, &ImageFiles::colour_listed_at}, recording.left_size,
+                 grey);
+    if (recording.has_right)
+      check_side(recording, {"the right camera", "the right camera", &ImageFiles::right, &ImageFiles::right_listed_at},
+                 recording.right_size, grey);
+    if (!recording.depth) return;
+    const Decode metres = [&](const fs::path& file) { decoder_.read_depth(file, *recording.depth); };
+    const cv::Size depth_size = check_side(
+        recording, {"the depth camera", "the depth camera", &ImageFiles::depth, &ImageFiles::depth_listed_at},
+        recording.scales_depth ? cv::Size() : recording.left_size, metres);
+    check_side(recording,
+               {"the confidence of depth", "the depth camera", &ImageFiles::confidence, &ImageFiles::depth_listed_at},
+               depth_size, grey);
+  }
+
+  struct Side {
+    std::string list, camera;  ///< the name of the list in messages, and the camera that has the size
+    fs::path ImageFiles::*member;
+    SourceLocation ImageFiles::*listed_at;
+  };
+
+  /// Checks the images of one camera, each file once. Returns their size.
+  cv::Size check_side(const CalibratedRecording& recording, const Side& side, const cv::Size& size,
+                      const Decode& decode) {
+    std::vector<ListedImage> images, decoded;
+    std::set<fs::path> seen;
+    Examples of_other_format;
+    std::size_t exr_images = 0;
+    for (const ImageFiles& files : recording.files) {
+      const fs::path& file = files.*side.member;
+      if (file.empty() || !seen.insert(file).second) continue;
+      images.push_back({files.timestamp, file.lexically_relative(folder_).string(), (files.*side.listed_at).line});
+      if (file.extension() != ".exr") {
+        decoded.push_back(images.back());
+      } else if (is_file(file)) {
+        ++exr_images;
+        attempt([&] {
+          if (!has_signature(file, exr_signature)) of_other_format.add(place_of(images.back()));
+        });
+      }
+    }
+    size_ = size;
+    camera_ = "of " + side.camera;
+    check_presence(side.list, images);
+    if (exr_images > 0) fact("of " + counted(exr_images, "OpenEXR image") + " only the first bytes were checked");
+    if (of_other_format.count > 0)
+      problem(side.list + " lists " + counted(of_other_format.count, "file") + " .exr that " +
+              (of_other_format.count == 1 ? "is no OpenEXR image: " : "are no OpenEXR images: ") +
+              of_other_format.text() + "; copy the recording again");
+    const cv::Size found = check_ends(side.list, decoded);
+    check_images(decoded, decode);
+    return found;
+  }
+
+  void check_video(const fs::path& file) {
+    const std::string name = file.lexically_relative(folder_).string();
+    if (!is_file(file)) return problem(name + " is missing, the video of the recording; copy the recording again");
+    attempt([&] {
+      if (!has_signature(file, mp4_signature)) problem(name + " is no MP4 video; copy the recording again");
+    });
+    fact("of the video only the first bytes were checked");
   }
 
   std::vector<ListedImage> check_list(const std::string& list, const std::string& what,
@@ -237,8 +284,8 @@ class Checker {
     return image.name + (image.line > 0 ? " (line " + std::to_string(image.line) + ")" : "");
   }
 
-  /// Looks at the begin and the end of every file: a broken download shows there.
-  void check_ends(const std::string& list, const std::vector<ListedImage>& images) {
+  /// Looks at the begin and the end of every file: a broken download shows there. Returns the size that was expected.
+  cv::Size check_ends(const std::string& list, const std::vector<ListedImage>& images) {
     Examples damaged, of_other_size, too_large;
     cv::Size expected = size_;
     for (const ListedImage& image : images) {
@@ -281,6 +328,7 @@ class Checker {
       problem(list + " lists " + counted(too_large.count, "image") + " that " + (too_large.count == 1 ? "is" : "are") +
               " larger than a camera's: " + too_large.text() + "; expected at most " + ImageStructure::largest() +
               "; make " + (too_large.count == 1 ? "it" : "them") + " smaller");
+    return expected;
   }
 
   void check_colour_and_depth(const std::vector<ListedImage>& colour, const std::vector<ListedImage>& depth) {
@@ -290,7 +338,6 @@ class Checker {
 
   /// Decodes images spread over the whole recording, the first and the last among them, but for those that check_ends()
   /// has found to be damaged, too large or of another size.
-  template <class Decode>
   void check_images(const std::vector<ListedImage>& images, const Decode& decode) {
     constexpr std::size_t sample = 11;
     if (images.empty()) return;

@@ -108,8 +108,8 @@ void set_median_intrinsics(Camera& camera, const std::vector<FrameIntrinsics>& f
   };
   camera.fx = median(&FrameIntrinsics::fx);
   camera.fy = median(&FrameIntrinsics::fy);
-  camera.cx = median(&FrameIntrinsics::cx);
-  camera.cy = median(&FrameIntrinsics::cy);
+  camera.cx = median(&FrameIntrinsics::cx) - 0.5;
+  camera.cy = median(&FrameIntrinsics::cy) - 0.5;
 }
 
 }  // namespace holdfast

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -85,6 +86,18 @@ class OdometryTable {
   std::vector<std::string> names_, values_;
 };
 
+/// Fails for a line that is missing or there twice: the frames of the video have no numbers and are those of the lines
+/// in their order, while depth images have the numbers of the column `frame`.
+void require_next_frame(const OdometryTable& row, std::size_t index, double& first) {
+  const double number = row.number("frame");
+  if (index == 0) first = number;
+  const double expected = first + static_cast<double>(index);
+  if (number == expected) return;
+  throw InputError(row.place(), "is of frame " + row.text("frame") + "; expected frame " +
+                                    std::to_string(static_cast<std::int64_t>(expected)) +
+                                    ", because each frame of the video has a line; export the recording again");
+}
+
 /// The pose of the camera, whose axes are right, down and forward already.
 Eigen::Isometry3d read_pose(const OdometryTable& row) {
   const Eigen::Quaterniond rotation(row.number("qw"), row.number("qx"), row.number("qy"), row.number("qz"));
@@ -110,7 +123,9 @@ CalibratedRecording read_stray_scanner(const fs::path& folder, const PhoneOption
   if (has_depth) recording.depth = DepthEncoding(options.depth_factor > 0.0 ? options.depth_factor : 1000.0);
   OdometryTable rows(list);
   std::vector<FrameIntrinsics> intrinsics;
+  double first_frame = 0.0;
   while (rows.next()) {
+    require_next_frame(rows, recording.files.size(), first_frame);
     ImageFiles files;
     files.timestamp = rows.number("timestamp");
     if (!recording.files.empty() && !(recording.files.back().timestamp < files.timestamp))

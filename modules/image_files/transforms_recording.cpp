@@ -72,14 +72,15 @@ double depth_factor(const fs::path& file, const YAML::Node& root, bool is_nerfst
   return factor;
 }
 
-Distortion read_distortion(const fs::path& file, const YAML::Node& root) {
-  const std::string model = text_of(root["camera_model"]);
+Distortion read_distortion(const fs::path& file, const YAML::Node& frame, const YAML::Node& root) {
+  const YAML::Node named = inherited(frame, root, "camera_model");
+  const std::string model = text_of(named);
   const bool is_fisheye = model == "OPENCV_FISHEYE";
   if (!model.empty() && model != "OPENCV" && model != "PINHOLE" && model != "SIMPLE_PINHOLE" && !is_fisheye)
-    throw InputError(location(file, root["camera_model"].Mark()),
+    throw InputError(location(file, named.Mark()),
                      "found the camera model '" + model + "'; expected OPENCV, OPENCV_FISHEYE or PINHOLE");
   const auto number = [&](const char* key) {
-    const YAML::Node value = root[key];
+    const YAML::Node value = inherited(frame, root, key);
     return value ? yaml_numbers::number(file, value, key) : 0.0;
   };
   if (is_fisheye)
@@ -161,10 +162,15 @@ CalibratedRecording read_transforms(const fs::path& folder, const PhoneOptions& 
       return yaml_numbers::number(file, required(file, frame, root, key), key, is_positive);
     };
     intrinsics.push_back({number("fl_x", true), number("fl_y", true), number("cx", false), number("cy", false)});
+    const Distortion distortion = read_distortion(file, frame, root);
+    if (listed.size() == 1) recording.camera.distortion = distortion;
+    if (!(distortion == recording.camera.distortion))
+      throw InputError(location(file, frame.Mark()),
+                       "has another distortion than the first frame; expected the same camera_model and k1, k2, ... of "
+                       "all frames, which are of one camera");
   }
   recording.camera.width = yaml_numbers::size(file, inherited(frames[0], root, "w"), "w");
   recording.camera.height = yaml_numbers::size(file, inherited(frames[0], root, "h"), "h");
-  recording.camera.distortion = read_distortion(file, root);
   set_median_intrinsics(recording.camera, intrinsics);
 
   order_frames(file, frames, options.frame_rate, listed);

@@ -286,6 +286,7 @@ TEST_F(DatasetCheckTest, LooksAtOpenLoris) {
 TEST_F(DatasetCheckTest, LooksAtRecordingsOfPhones) {
   fs::create_directories(program_.path("capture/images"));
   fs::create_directories(program_.path("scan/depth"));
+  fs::create_directories(program_.path("scan/confidence"));
   std::string frames, rows = "timestamp, frame, x, y, z, qx, qy, qz, qw\n";
   for (int i = 0; i < 2; ++i) {
     const std::string number = std::to_string(i);
@@ -293,6 +294,7 @@ TEST_F(DatasetCheckTest, LooksAtRecordingsOfPhones) {
                 cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(9)));
     for (const std::string& name : {"capture/images/" + number + ".depth.png", "scan/depth/00000" + number + ".png"})
       cv::imwrite(program_.path(name).string(), cv::Mat(24, 32, CV_16UC1, cv::Scalar(900)));
+    cv::imwrite(program_.path("scan/confidence/00000" + number + ".png").string(), cv::Mat(24, 32, CV_8UC1, 2));
     frames += std::string(i == 0 ? "" : ",") + R"({"file_path":"images/)" + number + R"(","depth_path":"images/)" +
               number + R"(.depth.png","transform_matrix":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]})";
     rows += "10." + number + ", 00000" + number + ", 0, 0, 0, 0, 0, 0, 1\n";
@@ -302,17 +304,57 @@ TEST_F(DatasetCheckTest, LooksAtRecordingsOfPhones) {
       R"({"fl_x":50,"fl_y":50,"cx":32,"cy":24,"w":64,"h":48,"integer_depth_scale":0.001,"frames":[)" + frames + "]}");
   program_.write("scan/odometry.csv", rows);
   program_.write("scan/camera_matrix.csv", "50, 0, 32\n0, 50, 24\n0, 0, 1\n");
-  program_.write("scan/rgb.mp4", "decoded by the source");
+  const std::string video = std::string("\0\0\0\x14", 4) + "ftypqt  ";
+  program_.write("scan/rgb.mp4", video);
   for (const char* folder : {"capture", "scan"}) {
     EXPECT_EQ(layout_of(program_.path(folder)), DatasetLayout::phone);
     EXPECT_THAT(check_dataset(program_.path(folder), nullptr).problems, IsEmpty());
   }
-  EXPECT_THAT(check_dataset(program_.path("scan"), nullptr).facts,
-              ElementsAre("2 colour-depth pairs", "camera of its own files: the size of its video", "2 true poses"));
-  program_.write("capture/images/1.depth.png", "no image");
+  const auto check = [&](const char* folder) { return check_dataset(program_.path(folder), nullptr); };
+  EXPECT_THAT(check("scan").facts, ElementsAre("2 colour-depth pairs", "camera of its own files: the size of its video",
+                                               "of the video only the first bytes were checked", "2 true poses"));
+  cv::imwrite(program_.path("scan/confidence/000001.png").string(), cv::Mat(12, 16, CV_8UC1, 2));
+  EXPECT_THAT(check("scan").problems, ElementsAre(AllOf(HasSubstr("confidence/000001.png (line 3) has 16x12 pixels"),
+                                                        HasSubstr("expected 32x24 of the depth camera"))));
+  program_.write("scan/confidence/000001.png", "no image");
+  EXPECT_THAT(check("scan").problems, ElementsAre(HasSubstr("the confidence of depth lists 1 image that is damaged")));
+  fs::remove_all(program_.path("scan/confidence"));
+  program_.write("scan/rgb.mp4", "no video");
+  EXPECT_THAT(check("scan").problems, ElementsAre("rgb.mp4 is no MP4 video; copy the recording again"));
   fs::remove(program_.path("scan/rgb.mp4"));
-  EXPECT_THAT(check_dataset(program_.path("capture"), nullptr).problems, ElementsAre(HasSubstr("1.depth.png")));
-  EXPECT_THAT(check_dataset(program_.path("scan"), nullptr).problems, ElementsAre(HasSubstr("rgb.mp4")));
+  EXPECT_THAT(check("scan").problems, ElementsAre(HasSubstr("rgb.mp4 is missing, the video of the recording")));
+  program_.write("capture/images/1.depth.png", "no image");
+  EXPECT_THAT(check("capture").problems, ElementsAre(HasSubstr("1.depth.png")));
+}
+
+/// Depth of Nerfstudio is named by its transforms.json, with any extension; each file is looked at by its own.
+TEST_F(DatasetCheckTest, LooksAtDepthByTheExtensionOfEachFile) {
+  fs::create_directories(program_.path("capture"));
+  const auto write = [&](const std::string& first, const std::string& second) {
+    std::string frames;
+    for (int i = 0; i < 2; ++i) {
+      const std::string colour = std::to_string(i) + ".png";
+      cv::imwrite(program_.path("capture/" + colour).string(), cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(9)));
+      frames += std::string(i == 0 ? "" : ",") + R"({"file_path":")" + colour + R"(","depth_file_path":")" +
+                (i == 0 ? first : second) + R"(","transform_matrix":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]})";
+    }
+    program_.write("capture/transforms.json",
+                   R"({"fl_x":50,"fl_y":50,"cx":32,"cy":24,"w":64,"h":48,"frames":[)" + frames + "]}");
+  };
+  const auto check = [&] { return check_dataset(program_.path("capture"), nullptr); };
+  program_.write("capture/0.exr", "\x76\x2f\x31\x01 and so on");
+  program_.write("capture/1.exr", "\x76\x2f\x31\x01");
+  program_.write("capture/0.npy", "\x93NUMPY");
+  write("0.exr", "1.exr");
+  EXPECT_THAT(check().problems, IsEmpty());
+  EXPECT_THAT(check().facts, Contains("of 2 OpenEXR images only the first bytes were checked"));
+  write("0.exr", "0.npy");
+  EXPECT_THAT(check().problems, ElementsAre(HasSubstr("the depth camera lists 1 image that is damaged: 0.npy")));
+  write("0.npy", "0.npy");
+  EXPECT_THAT(check().problems, ElementsAre(HasSubstr("lists 1 image that is damaged: 0.npy"))) << "each file once";
+  program_.write("capture/1.exr", "v/1");
+  write("0.exr", "1.exr");
+  EXPECT_THAT(check().problems, ElementsAre(HasSubstr("lists 1 file .exr that is no OpenEXR image: 1.exr (line 1)")));
 }
 
 /// A sequence of three pairs in KITTI's layout; the source's own tests look at its content.

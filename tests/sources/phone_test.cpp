@@ -109,8 +109,8 @@ TEST_F(Record3DTest, ReadsColourDepthCameraAndPoses) {
   ASSERT_TRUE(description.camera.has_value());
   EXPECT_EQ(description.camera->fx, 50.0);
   EXPECT_EQ(description.camera->fy, 51.0);
-  EXPECT_EQ(description.camera->cx, 32.0);
-  EXPECT_EQ(description.camera->cy, 24.0);
+  EXPECT_EQ(description.camera->cx, 31.5) << "the principal point is in the middle; pixel centres lie at integers";
+  EXPECT_EQ(description.camera->cy, 23.5);
   EXPECT_NEAR(description.camera->frame_rate, 2.0 / 0.034, 1e-9);
   const Trajectory truth = source->truth();
   ASSERT_EQ(truth.size(), 3U);
@@ -140,7 +140,7 @@ TEST_F(Record3DTest, ScalesFramesAndCamera) {
   EXPECT_EQ(camera.width, 32);
   EXPECT_EQ(camera.height, 24);
   EXPECT_EQ(camera.fx, 26.0) << "the median of the frames";
-  EXPECT_EQ(camera.cx, 31.5 / 2 - 0.5) << "the left border is at -0.5";
+  EXPECT_EQ(camera.cx, 31.0 / 2 - 0.5) << "the left border is at -0.5";
 #ifdef HOLDFAST_OPENEXR
   const std::optional<SensorFrame> frame = source->next();
   EXPECT_EQ(frame->colour.size(), cv::Size(32, 24));
@@ -207,6 +207,7 @@ TEST_F(TransformsTest, ReadsFramesInTheOrderOfTime) {
   const auto source = open();
   EXPECT_EQ(source->describe().camera->fx, 51.0) << "the median of the frames";
   EXPECT_EQ(source->describe().camera->fy, 50.0) << "that of the file";
+  EXPECT_EQ(source->describe().camera->cx, 31.5) << "pixel centres lie at integers";
   const std::vector<SensorFrame> frames = test::read_all(*source);
   ASSERT_EQ(frames.size(), 3U);
   for (int i = 0; i < 3; ++i) {
@@ -235,6 +236,26 @@ TEST_F(TransformsTest, ReadsThoseOfNerfstudio) {
   EXPECT_EQ(read[1].depth.at<float>(10, 20), static_cast<float>((100 + 64 * 10 + 20) / 1000.0)) << "millimetres";
 }
 
+TEST_F(TransformsTest, TakesTheDistortionOfTheFrames) {
+  const std::string before = folder_.read("rec/transforms.json");
+  const auto write = [&](const std::vector<std::string>& of_frames) {
+    std::string content = before;
+    std::size_t place = 0;
+    for (const std::string& text : of_frames) {
+      place = content.find("\"transform_matrix\"", place);
+      content.insert(place, text);
+      place += text.size() + 1;
+    }
+    folder_.write("rec/transforms.json", content);
+  };
+  const std::string fisheye = R"("camera_model":"OPENCV_FISHEYE","k1":0.02,)";
+  write({fisheye, fisheye, fisheye});
+  EXPECT_EQ(open()->describe().camera->distortion, (Distortion{.k1 = 0.02, .lens = Lens::fisheye}));
+  write({fisheye, fisheye, R"("camera_model":"OPENCV_FISHEYE","k1":0.03,)"});
+  EXPECT_THAT(test::input_error([&] { open(); }),
+              AllOf(HasSubstr("transforms.json:5:"), HasSubstr("another distortion than the first frame")));
+}
+
 TEST_F(TransformsTest, RefusesWhatDoesNotFitTogether) {
   EXPECT_THAT(error_with("transforms.json", "0.00015259021896696422", "1.5259021896696422e-05"),
               AllOf(HasSubstr("transforms.json:2:"), HasSubstr("beyond 1.0")));
@@ -256,11 +277,9 @@ TEST_F(TransformsTest, RefusesWhatDoesNotFitTogether) {
 class StrayScannerTest : public PhoneTest {
  protected:
   StrayScannerTest() {
-    cv::VideoWriter video((folder_.path() / "video.avi").string(), cv::CAP_FFMPEG,
-                          cv::VideoWriter::fourcc('F', 'F', 'V', '1'), 60.0, {64, 48});
+    write_video("FFV1");
     std::string rows = "timestamp, frame, x, y, z, qx, qy, qz, qw\n";
     for (int i = 0; i < 4; ++i) {
-      video.write(test::colour_image(10 * i));
       char line[120];
       std::snprintf(line, sizeof(line), "%.4f, %06d, %d.5, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0\n", 300.0 + i / 60.0, 5 + i, i);
       rows += line;
@@ -272,18 +291,25 @@ class StrayScannerTest : public PhoneTest {
                           cv::Mat(depth_height, depth_width, CV_16UC1, cv::Scalar(1200 + i)));
       folder_.write_image(std::string("rec/confidence/") + line, confidence);
     }
-    video.release();
-    std::filesystem::rename(folder_.path() / "video.avi", folder_.path() / "rec/rgb.mp4");
     folder_.write("rec/odometry.csv", rows);
     folder_.write("rec/camera_matrix.csv", "50.0, 0.0, 32.0\n0.0, 51.0, 24.0\n0.0, 0.0, 1.0");
     folder_.write("rec/imu.csv", "timestamp, a_x, a_y, a_z, alpha_x, alpha_y, alpha_z\n300.0, 0, 0, -1, 0, 0, 0\n");
+  }
+  /// Four frames, in the container AVI.
+  void write_video(const std::string& codec) const {
+    cv::VideoWriter video((folder_.path() / "video.avi").string(), cv::CAP_FFMPEG,
+                          cv::VideoWriter::fourcc(codec[0], codec[1], codec[2], codec[3]), 60.0, {64, 48});
+    for (int i = 0; i < 4; ++i) video.write(test::colour_image(10 * i));
+    video.release();
+    std::filesystem::create_directories(folder_.path() / "rec");
+    std::filesystem::rename(folder_.path() / "video.avi", folder_.path() / "rec/rgb.mp4");
   }
 };
 
 TEST_F(StrayScannerTest, ReadsVideoDepthAndPoses) {
   const auto source = open();
   EXPECT_EQ(source->describe().camera->width, 64) << "that of the video";
-  EXPECT_EQ(source->describe().camera->cx, 32.0);
+  EXPECT_EQ(source->describe().camera->cx, 31.5);
   EXPECT_FALSE(source->describe().has_imu) << "the unit of its accelerations is not sure";
   const std::vector<SensorFrame> frames = test::read_all(*source);
   ASSERT_EQ(frames.size(), 4U);
@@ -305,6 +331,35 @@ TEST_F(StrayScannerTest, BeginsLater) {
   EXPECT_NEAR(source->next()->colour.at<cv::Vec3b>(20, 20)[0], 60, 2);
 }
 
+TEST_F(StrayScannerTest, NumbersNoFramesAfterOneThatCannotBeDecoded) {
+  write_video("MJPG");
+  std::string video = folder_.read("rec/rgb.mp4");
+  std::size_t second = video.find("00dc", video.find("movi"));
+  second = video.find("00dc", second + 4);
+  video.replace(second + 8, 200, std::string(200, '\0'));
+  folder_.write("rec/rgb.mp4", video);
+  EXPECT_THAT(test::input_error([&] { test::read_all(*open()); }),
+              AllOf(HasSubstr("odometry.csv:3"), HasSubstr("cannot be decoded at frame 1; expected frame 1")));
+  const auto source = open({{"on_bad_frame", "skip"}});
+  const std::vector<SensorFrame> frames = test::read_all(*source);
+  ASSERT_EQ(frames.size(), 1U) << "the others are not those of their lines";
+  EXPECT_NEAR(frames[0].colour.at<cv::Vec3b>(20, 20)[0], 40, 4);
+  EXPECT_EQ(source->skipped().size(), 3U);
+}
+
+TEST_F(StrayScannerTest, WantsALineForEachFrameOfTheVideo) {
+  EXPECT_THAT(error_with("odometry.csv", "000006", "000007"),
+              AllOf(HasSubstr("odometry.csv:3"), HasSubstr("is of frame 000007; expected frame 6")));
+  EXPECT_THAT(error_with("odometry.csv", "000007", "000006"), HasSubstr("odometry.csv:4"));
+  EXPECT_TRUE(open({{"frames", 2}})->warnings().empty());
+  std::string rows = folder_.read("rec/odometry.csv");
+  folder_.write("rec/odometry.csv", rows.substr(0, rows.find("300.05")));
+  const Warnings warnings = open()->warnings();
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings[0].to_string(),
+              AllOf(HasSubstr("odometry.csv"), HasSubstr("has 3 lines, but the video has 4 frames")));
+}
+
 TEST_F(StrayScannerTest, TakesTheIntrinsicsOfEachLine) {
   std::string rows = "timestamp, frame, x, y, z, qx, qy, qz, qw, fx, fy, cx, cy\n";
   for (int i = 0; i < 3; ++i)
@@ -312,7 +367,7 @@ TEST_F(StrayScannerTest, TakesTheIntrinsicsOfEachLine) {
             std::to_string(i) + ", 50, 30, 20\n";
   folder_.write("rec/odometry.csv", rows);
   EXPECT_EQ(open()->describe().camera->fx, 51.0);
-  EXPECT_EQ(open()->describe().camera->cy, 20.0);
+  EXPECT_EQ(open()->describe().camera->cy, 19.5);
 }
 
 TEST_F(StrayScannerTest, RefusesWhatDoesNotFitTogether) {

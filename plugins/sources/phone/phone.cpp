@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "exr_depth.hpp"
+#include "holdfast/core/counted.hpp"
 #include "holdfast/image_files/phone_recording.hpp"
 #include "holdfast/image_files/recorded_frames.hpp"
 #include "holdfast/plugin/plugin.hpp"
@@ -45,29 +46,55 @@ struct PhoneSettings : RecordedFrames {
   }
 };
 
+struct OpenedRecording {
+  CalibratedRecording recording;
+  Warnings warnings;
+};
+
 /// The recording, with readers for what is no PNG or JPEG file.
-CalibratedRecording open_recording(const PhoneSettings& settings) {
-  CalibratedRecording recording = read_phone_recording({settings.path,
-                                                        settings.width,
-                                                        settings.frame_rate,
-                                                        settings.depth_factor,
-                                                        settings.minimum_confidence,
-                                                        {settings.start, settings.frames}});
+OpenedRecording open_recording(const PhoneSettings& settings) {
+  OpenedRecording opened;
+  CalibratedRecording& recording = opened.recording;
+  recording = read_phone_recording({settings.path,
+                                    settings.width,
+                                    settings.frame_rate,
+                                    settings.depth_factor,
+                                    settings.minimum_confidence,
+                                    {settings.start, settings.frames}});
   if (recording.colour_is_video) {
     const auto video = std::make_shared<phone_plugin::VideoFrames>(recording.files.front().colour);
     resize_frames(recording, video->size(), settings.width, settings.path.string());
     recording.readers.colour = [video](const ImageFiles& files) { return video->read(files.video_index); };
+    if (const std::size_t lines = recording.truth.size(); video->count() > lines)
+      opened.warnings.push_back({recording.files.front().colour_listed_at,
+                                 "the list has " + counted(lines, "line") + ", but the video has " +
+                                     counted(video->count(), "frame") +
+                                     "; the last ones are not read, and if frames are missing elsewhere, colour, depth "
+                                     "and poses do not belong together"});
   }
   if (recording.depth && recording.files.front().depth.extension() == ".exr")
     recording.readers.depth = [](const ImageFiles& files) { return phone_plugin::read_exr_depth(files.depth); };
-  return recording;
+  return opened;
 }
 
 /// A recording of a phone with a depth sensor, with the poses that it estimated as truth.
 class PhoneSource final : public CalibratedSource {
  public:
   PhoneSource(const PhoneSettings& settings, const CreationContext&)
-      : CalibratedSource(open_recording(settings), settings.path, settings.skips_bad_frames()) {}
+      : PhoneSource(open_recording(settings), settings) {}
+
+  Warnings warnings() const override {
+    Warnings warnings = warnings_;
+    add_warnings(warnings, CalibratedSource::warnings());
+    return warnings;
+  }
+
+ private:
+  PhoneSource(OpenedRecording opened, const PhoneSettings& settings)
+      : CalibratedSource(std::move(opened.recording), settings.path, settings.skips_bad_frames()),
+        warnings_(std::move(opened.warnings)) {}
+
+  Warnings warnings_;
 };
 
 }  // namespace

@@ -33,16 +33,30 @@ void VideoFrames::open() {
   position_ = 0;
 }
 
+std::size_t VideoFrames::count() const {
+  const double count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
+  return count > 0.0 ? static_cast<std::size_t>(count) : 0;
+}
+
 cv::Mat VideoFrames::read(std::size_t index) {
+  if (index >= readable_) refuse(index);
   if (index < position_) open();
   cv::Mat frame;
-  while (position_ <= index) {
-    if (!capture_.grab() || (position_ == index && !capture_.retrieve(frame)))
-      throw InputError({file_.string()}, "ends after " + counted(position_, "frame") + "; expected frame " +
-                                             std::to_string(index) + ": the recording was cut, or copied in part");
-    ++position_;
-  }
+  for (; position_ <= index; ++position_)
+    if (!capture_.grab() || (position_ == index && !capture_.retrieve(frame))) {
+      readable_ = position_;
+      refuse(index);
+    }
   return frame.clone();  // the buffer is used again
+}
+
+void VideoFrames::refuse(std::size_t index) const {
+  const std::string expected = "; expected frame " + std::to_string(index);
+  if (readable_ >= count())
+    throw InputError({file_.string()}, "ends after " + counted(readable_, "frame") + expected +
+                                           ": the recording was cut, or copied in part");
+  throw InputError({file_.string()}, "cannot be decoded at frame " + std::to_string(readable_) + expected +
+                                         ": after damage it is not sure which frame is which; copy it again");
 }
 
 }  // namespace holdfast::phone_plugin

@@ -3,8 +3,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace holdfast::rosbag_plugin {
+
+namespace {
+
+/// Begin and end of the pixels of a row or column whose centres lie between two positions or, if there are none, of the
+/// pixel in the middle, as far as they are inside the image.
+std::pair<int, int> covered(double first, double last, int size) {
+  constexpr double outside = 1.0;  // far positions may be no integers
+  const double begin = std::clamp(first, -outside, size + outside), end = std::clamp(last, -outside, size + outside);
+  int from = static_cast<int>(std::ceil(begin)), to = static_cast<int>(std::ceil(end));
+  if (to <= from) {
+    from = static_cast<int>(std::lround(0.5 * (begin + end)));
+    to = from + 1;
+  }
+  return {std::max(from, 0), std::min(to, size)};
+}
+
+}  // namespace
 
 DepthRegistration::DepthRegistration(const Camera& depth, const Camera& colour, const Eigen::Isometry3d& T_colour_depth)
     : depth_(depth), colour_(colour), T_colour_depth_(T_colour_depth) {
@@ -37,14 +55,8 @@ cv::Mat DepthRegistration::apply(const cv::Mat& depth) const {
       const std::size_t corner = static_cast<std::size_t>(y) * row_length + static_cast<std::size_t>(x);
       const Eigen::Vector3d begin = corners_[corner] * z + shift, end = corners_[corner + row_length + 1] * z + shift;
       if (!project(begin, first) || !project(end, last)) continue;
-      // The pixels whose centres lie inside, at least one.
-      const int left = std::max(0, static_cast<int>(std::ceil(std::clamp(first.x(), -1.0, 1e5))));
-      const int top = std::max(0, static_cast<int>(std::ceil(std::clamp(first.y(), -1.0, 1e5))));
-      const int right =
-          std::min(colour_.width, std::max(left + 1, static_cast<int>(std::ceil(std::clamp(last.x(), -1.0, 1e5)))));
-      const int bottom =
-          std::min(colour_.height, std::max(top + 1, static_cast<int>(std::ceil(std::clamp(last.y(), -1.0, 1e5)))));
-      if (last.x() < 0.0 || last.y() < 0.0) continue;
+      const auto [left, right] = covered(first.x(), last.x(), colour_.width);
+      const auto [top, bottom] = covered(first.y(), last.y(), colour_.height);
       const auto value = static_cast<float>(0.5 * (begin.z() + end.z()));
       for (int v = top; v < bottom; ++v) {
         auto* to = registered.ptr<float>(v);

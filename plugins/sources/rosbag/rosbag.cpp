@@ -221,12 +221,17 @@ class RosbagSource final : public FrameSource {
     const Message depth = bag_->content(source.depth->message);
     const cv::Size expected = registration_ ? registration_->depth_size() : size_;
     frame.depth = images_.depth(depth, {settings_.depth_factor, settings_.invalid_depth}, [&](const cv::Size& size) {
-      if (size != expected)
-        throw InputError({depth.place}, "is " + size_text(size.width, size.height) + " pixels, but its " +
-                                            (registration_ ? "camera_info" : "colour image") + " is " +
-                                            size_text(expected.width, expected.height) +
-                                            "; expected depth registered to the colour image; choose its topic with "
-                                            "`source.rosbag.depth`");
+      if (size == expected) return;
+      const std::string is = "is " + size_text(size.width, size.height) + " pixels, but its ";
+      const std::string wanted = " is " + size_text(expected.width, expected.height);
+      if (registration_)
+        throw InputError({depth.place}, is + "camera_info" + wanted +
+                                            ", so that its calibration is of another mode; record again without "
+                                            "changing the mode, or use the colour images alone: "
+                                            "`source.rosbag.depth: none`");
+      throw InputError({depth.place}, is + "colour image" + wanted +
+                                          "; expected depth registered to the colour image; choose its topic with "
+                                          "`source.rosbag.depth`");
     });
     if (registration_) frame.depth = registration_->apply(frame.depth);
     return frame;

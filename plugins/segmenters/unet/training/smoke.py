@@ -19,7 +19,9 @@ import torch
 from classes import IGNORED, IN_BOX, IN_NO_BOX, NOT_PERSON, PERSON, UNLABELLED
 from measure import found_labels
 from pack import PackError, read_pack
+from samples import to_tensor
 from teacher import labels_of
+from train_gpu import student_probabilities
 from weights import in_order, load_onnx, load_weights, with_normalisation
 
 HERE = pathlib.Path(__file__).parent
@@ -65,6 +67,19 @@ def check_boxes(folder):
         found = labels_of(probability, torch.full((1, 20, 20), hint, dtype=torch.uint8))
         if not bool((found == expected).all()):
             raise PackError(f"a person's probability of {chance} where the label says {hint} became {found[0, 10, 10]}; expected {expected}")
+
+
+def check_student(model, input_size):
+    """A student's probabilities are the mean of its own for a picture and for the mirror image."""
+    picture = np.random.default_rng(1).integers(0, 255, (input_size[1], input_size[0], 3), dtype=np.uint8)
+    planes = torch.from_numpy(picture[:, :, ::-1].transpose(2, 0, 1) / np.float32(255))[None]
+    with torch.no_grad():
+        scores, mirrored = (model(to_tensor(view)[None]) for view in (picture, picture[:, ::-1]))
+        expected = 0.5 * (torch.softmax(scores, 1) + torch.softmax(mirrored, 1).flip(3))
+        found = student_probabilities(model, planes, tuple(scores.shape[2:]), input_size)
+    difference = float((found - expected).abs().max())
+    if not difference < 1e-4:
+        raise PackError(f"the student's probabilities differ by {difference} from the network's; expected the same")
 
 
 def check_kept_blocks(folder, pack):
@@ -116,6 +131,7 @@ def main():
     if not difference < 1e-3:
         raise PackError(f"{onnx}: scores differ by {difference} from those of weights.npz; expected the same")
     check_scores(arguments.output, onnx, model, pictures)
+    check_student(load_onnx(onnx), input_size)
     run("calibrate.py", pack, arguments.output / "weights.npz", "--width", 64, "--height", 48, "--every", 1)
     run("int8_labels.py", pack, onnx, "--width", 64, "--height", 48, "--pictures", 4)
     run("train.py", pack, "--output", arguments.output / "further", "--size", "tiny", "--batch", 4, "--workers", 0,
