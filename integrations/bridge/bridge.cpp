@@ -6,6 +6,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <future>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -18,6 +19,9 @@
 #include "holdfast/map_io/map_file.hpp"
 #include "inertial_buffer.hpp"
 #include "session.hpp"
+#ifdef HOLDFAST_WEB_SERVER
+#include "holdfast/web_server/socket_server.hpp"
+#endif
 
 namespace holdfast::bridge {
 
@@ -101,6 +105,7 @@ struct Bridge::State {
   void process(ImageSet frame);
   SessionPointer begin_session();
   void end_session();
+  void tell_addresses();
   void begin_with(const std::string& file, bool localises);
   std::vector<ImuSample> take_inertia(const ImageSet& frame);
   void record(const FrameOutput& output);
@@ -150,6 +155,7 @@ struct Bridge::State {
   std::string map_file;
   bool localise_only = false;
   bool cannot_begin = false;
+  std::future<void> session_end;  // of `session`
   std::atomic<bool> is_paused = false;
 
   std::mutex map_mutex;
@@ -236,8 +242,8 @@ void Bridge::State::process(ImageSet frame) {
   if (is_paused) return;
   SessionPointer current = session_now();
   if (current && current->is_before_last(frame.colour.stamp)) {
+    current.reset();  // end_session() waits for all who use it
     end_session();
-    current.reset();
   }
   if (!current && !cannot_begin) {
     cannot_begin = true;  // unless it succeeds: the next frame would fail as well
@@ -274,22 +280,41 @@ SessionPointer Bridge::State::begin_session() {
   source.has_depth = parameters.has_depth;
   source.has_right = parameters.has_right;
   source.has_imu = configuration.imu.has_value();
-  const SessionPointer begun =
-      std::make_shared<Session>(SessionStart{configuration, registry, parameters, source, map_file, localise_only});
+  auto made =
+      std::make_unique<Session>(SessionStart{configuration, registry, parameters, source, map_file, localise_only});
+  std::promise<void> end;
+  std::future<void> end_of_begun = end.get_future();
+  const SessionPointer begun(made.release(), [end = std::move(end)](const Session* ended) mutable {
+    delete ended;
+    end.set_value();
+  });
   for (const Diagnostic& warning : begun->warnings()) tell(Level::warning, warning.to_string());
   {
     const std::lock_guard lock(count_mutex);
     failure.clear();
   }
+  tell_addresses();
   const std::lock_guard lock(session_mutex);
   session = begun;
+  session_end = std::move(end_of_begun);
   return begun;
 }
 
+/// Waits until the threads of the session have ended and its ports are free, also where others still use it.
 void Bridge::State::end_session() {
-  SessionPointer ended;  // its threads end without the lock
-  const std::lock_guard lock(session_mutex);
-  ended.swap(session);
+  {
+    SessionPointer ended;  // its threads end without the lock
+    const std::lock_guard lock(session_mutex);
+    ended.swap(session);
+  }
+  if (session_end.valid()) session_end.get();
+}
+
+/// Where observers such as `foxglove` can be reached; their addresses have a secret.
+void Bridge::State::tell_addresses() {
+#ifdef HOLDFAST_WEB_SERVER
+  for (const auto& [name, address] : running_servers()) tell(Level::ok, name + ": " + address);
+#endif
 }
 
 /// The next frame begins a session with this map, or a new one without it.

@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <initializer_list>
 #include <utility>
 
 #include "depth_units.hpp"
 #include "holdfast/core/atomic_file.hpp"
+#include "holdfast/core/counted.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/mcap/sensor_messages.hpp"
@@ -28,6 +31,26 @@ constexpr const char* imu_frame = "camera_imu_optical_frame";
 constexpr double millimetres = 1000.0;  // of 16UC1 (REP 118)
 constexpr std::size_t waiting_frames = 4;
 
+bool is_same_file(const std::filesystem::path& one, const std::filesystem::path& other) {
+  std::error_code ignored;  // of one that is not there
+  return std::filesystem::equivalent(one, other, ignored);
+}
+
+/// Throws if a file that is to be written is what this recording reads, or lies in the folder that its source reads.
+void require_no_inputs(std::initializer_list<std::filesystem::path> files, const Configuration& configuration) {
+  const auto refuse = [](const std::filesystem::path& file, const char* what) {
+    throw InputError({file.string()}, std::string("is ") + what + " of this recording; name another bag");
+  };
+  for (const std::filesystem::path& file : files) {
+    if (!std::filesystem::exists(file)) continue;
+    if (is_same_file(file, configuration.file)) refuse(file, "the configuration");
+    for (const auto& [name, value] : configuration.source.values)
+      if (const std::string* path = std::get_if<std::string>(&value); path != nullptr && !path->empty())
+        if (is_same_file(file, *path) || is_same_file(std::filesystem::absolute(file).parent_path(), *path))
+          refuse(file, "a file of the source");
+  }
+}
+
 const SourceDescription& without_right(const Configuration& configuration, const SourceDescription& source) {
   if (source.has_depth || !source.has_right) return source;
   throw ConfigurationError(
@@ -43,6 +66,7 @@ BagRecorder::BagRecorder(const Configuration& configuration, const Registry& reg
                          std::filesystem::path file, bool overwrite)
     : file_(std::move(file)),
       configuration_(recorded_configuration(configuration, registry, without_right(configuration, source), "rosbag")) {
+  require_no_inputs({file_, configuration_file(), truth_file()}, configuration);
   require_new_files({file_, configuration_file(), truth_file()}, overwrite);
   std::error_code ignored;
   std::filesystem::remove(truth_file(), ignored);
@@ -70,20 +94,29 @@ void BagRecorder::record(const SensorFrame& frame) {
     throw InputError({"frame " + std::to_string(frame.index)},
                      "has no colour or no depth image, and cannot be recorded; check the source");
   writer_->rethrow();
+  if (!has_begun_) begin(frame);
   writer_->queue().push(frame);
-  ++frames_;
   largest_delay_ = std::max(largest_delay_, std::abs(frame.depth_delay));
 }
 
+/// Chooses the shift of all stamps by the first frame, whose depth and inertial measurements may precede time 0.
+void BagRecorder::begin(const SensorFrame& frame) {
+  has_begun_ = true;
+  double earliest = std::min(frame.timestamp, frame.timestamp + frame.depth_delay);
+  if (!frame.imu.empty()) earliest = std::min(earliest, frame.imu.front().timestamp);
+  if (earliest < 0.0) shift_ = std::ceil(-earliest);
+}
+
 void BagRecorder::write(const SensorFrame& frame) {
-  const mcap::MessageHeader header{mcap::message_stamp(frame.timestamp), camera_frame};
+  const mcap::MessageHeader header{mcap::message_stamp(frame.timestamp + shift_), camera_frame};
   if (imu_ != 0) write_imu(frame);
   if (camera_info_ != 0)
     bag_->write(camera_info_, header.stamp, mcap::camera_info_message(header, *configuration_.camera));
   const char* encoding = frame.colour.channels() == 1 ? "mono8" : "bgr8";
   bag_->write(colour_, header.stamp, mcap::image_message(header, encoding, frame.colour));
+  ++frames_;
   if (depth_ == 0) return;
-  const mcap::MessageHeader at_depth{mcap::message_stamp(frame.timestamp + frame.depth_delay), camera_frame};
+  const mcap::MessageHeader at_depth{mcap::message_stamp(frame.timestamp + frame.depth_delay + shift_), camera_frame};
   const bool is_whole = exact_depth_factor(frame.depth, {millimetres}) == millimetres;
   bag_->write(depth_, at_depth.stamp,
               is_whole ? mcap::image_message(at_depth, "16UC1", to_depth_units(frame.depth, millimetres))
@@ -93,7 +126,7 @@ void BagRecorder::write(const SensorFrame& frame) {
 void BagRecorder::write_imu(const SensorFrame& frame) {
   for (const ImuSample& sample : frame.imu) {
     if (!(sample.timestamp > last_imu_stamp_)) continue;  // shared with the frame before
-    const mcap::MessageHeader header{mcap::message_stamp(sample.timestamp), imu_frame};
+    const mcap::MessageHeader header{mcap::message_stamp(sample.timestamp + shift_), imu_frame};
     bag_->write(imu_, header.stamp, mcap::imu_message(header, sample));
     last_imu_stamp_ = sample.timestamp;
   }
@@ -101,18 +134,37 @@ void BagRecorder::write_imu(const SensorFrame& frame) {
 
 void BagRecorder::finish(const Trajectory& truth) {
   writer_->finish();
-  bag_->close();
+  std::exception_ptr failure;
+  try {
+    write_files_beside(truth);
+  } catch (...) {
+    failure = std::current_exception();
+  }
   writer_->rethrow();
+  bag_->close();
+  if (failure) std::rethrow_exception(failure);
+}
+
+std::string BagRecorder::losses() const {
+  if (shift_ == 0.0) return {};
+  return "all time stamps are " + counted(static_cast<std::size_t>(shift_), "second") +
+         " later than those of the source, some of which are negative; a bag cannot hold such";
+}
+
+void BagRecorder::write_files_beside(const Trajectory& truth) {
   ParameterValues& values = configuration_.source.values;
   if (!truth.empty()) {
-    write_trajectory(truth_file(), truth);
+    Trajectory shifted = truth;
+    for (TimedPose& pose : shifted) pose.timestamp += shift_;
+    write_trajectory(truth_file(), shifted);
     values["truth"] = truth_file().filename().string();
   }
   // Whole millimetres up to the largest number.
   values["invalid_depth"] = std::int64_t{0};
   if (double& limit = std::get<double>(values["max_time_difference"]); largest_delay_ >= limit)
     limit = std::min(1.0, 1.01 * largest_delay_);
-  write_file_atomically(configuration_file(), to_yaml(configuration_));
+  const std::string note = losses();
+  write_file_atomically(configuration_file(), (note.empty() ? "" : "# " + note + "\n") + to_yaml(configuration_));
 }
 
 }  // namespace holdfast

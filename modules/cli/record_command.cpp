@@ -35,11 +35,11 @@ void record_frames(FrameSource& source, const RecordArguments& arguments, AnyRec
   if (arguments.frames > 0) total = std::min(total.value_or(arguments.frames), arguments.frames);
   Progress progress(total, arguments.quiet);
   const SourceInterrupter interrupter(source);
-  while (!interrupted() && (arguments.frames == 0 || recorder.frame_count() < arguments.frames)) {
+  for (std::uint64_t count = 0; !interrupted() && (arguments.frames == 0 || count < arguments.frames);) {
     const std::optional<SensorFrame> frame = source.next();
     if (!frame) return;
     recorder.record(*frame);
-    progress.update(recorder.frame_count());
+    progress.update(++count);
   }
 }
 
@@ -54,8 +54,8 @@ int record_source(FrameSource& source, const RecordArguments& arguments, AnyReco
   }
   try {
     recorder.finish(source.truth());
-  } catch (const InputError& error) {
-    failure += (failure.empty() ? "" : "\n") + std::string(error.what());
+  } catch (const std::exception& error) {
+    if (failure != error.what()) failure += (failure.empty() ? "" : "\n") + std::string(error.what());
   }
   const std::string written = counted(recorder.frame_count(), "frame") + " recorded in " + recorder.target().string();
   if (!failure.empty()) {

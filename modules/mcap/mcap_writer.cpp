@@ -63,8 +63,10 @@ McapWriter::McapWriter(std::filesystem::path file, const std::string& profile, C
   put(record(Kind::header, header));
 }
 
-void McapWriter::fail() const {
-  throw InputError({file_.string()}, "cannot be written: " + std::system_category().message(errno));
+/// After the first failure the stream refuses everything, and errno has another reason or none.
+void McapWriter::fail() {
+  if (failure_.empty()) failure_ = "cannot be written: " + std::system_category().message(errno);
+  throw InputError({file_.string()}, failure_);
 }
 
 void McapWriter::put(std::string_view bytes) {

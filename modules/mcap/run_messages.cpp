@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "foxglove_messages.hpp"
 
@@ -16,6 +18,8 @@ Eigen::Isometry3d T_map_world() {
   T.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   return T;
 }
+
+std::uint64_t nanoseconds(double time) { return static_cast<std::uint64_t>(std::llround(std::max(time, 0.0) * 1e9)); }
 
 }  // namespace
 
@@ -41,7 +45,7 @@ std::uint16_t RunMessages::add(const char* topic, const char* schema) {
 template <class Make>
 void RunMessages::write(std::uint16_t channel, const Make& make) {
   if (!sink_.wants(channel)) return;
-  sink_.write(channel, static_cast<std::uint64_t>(std::llround(std::max(time_, 0.0) * 1e9)), make().dump());
+  sink_.write(channel, nanoseconds(time_), make().dump());
 }
 
 void RunMessages::add_frame(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result) {
@@ -69,12 +73,14 @@ void RunMessages::add_images(const SensorFrame& sensor_frame, const Frame& frame
 void RunMessages::add_health(const FrameHealth& health) {
   const bool is_new = !health_ || health_->state != health.state || !(health_->reasons == health.reasons);
   health_ = health;
-  if (is_new) write(log_, [&] { return log_message(time_, health); });
+  if (is_new)
+    sink_.write_state(log_, nanoseconds(time_), [time = time_, health] { return log_message(time, health).dump(); });
 }
 
-void RunMessages::add_map(const MapSnapshot& map) {
-  write(path_, [&] { return path_message(time_, map.keyframes); });
-  write(points_, [&] { return cloud_message(time_, map.points); });
+void RunMessages::add_map(MapSnapshot map, double time) {
+  const auto shared = std::make_shared<const MapSnapshot>(std::move(map));
+  sink_.write_state(path_, nanoseconds(time), [=] { return path_message(time, shared->keyframes).dump(); });
+  sink_.write_state(points_, nanoseconds(time), [=] { return cloud_message(time, shared->points).dump(); });
 }
 
 }  // namespace holdfast::mcap

@@ -9,6 +9,7 @@
 #include <array>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
@@ -43,6 +44,8 @@ constexpr auto request_time = std::chrono::seconds(10);
 constexpr auto accept_pause = std::chrono::milliseconds(200);
 /// A browser that has not answered for so long is gone.
 constexpr auto idle_time = std::chrono::seconds(20);
+/// How long the end of a server waits for its clients to take what is left.
+constexpr auto closing_time = std::chrono::seconds(2);
 constexpr auto tick_watched = std::chrono::milliseconds(33);
 constexpr auto tick_alone = std::chrono::milliseconds(200);
 
@@ -109,6 +112,7 @@ struct SocketServer::State {
   void tick();
   void add(const std::shared_ptr<SocketSession>& session);
   void remove(const SocketSession* session);
+  void close();
 
   Options options;
   Handlers handlers;
@@ -116,9 +120,11 @@ struct SocketServer::State {
   // Before the context, whose end takes the last requests with it.
   std::vector<RequestSession*> silent;  // those that have not shown a token yet, the oldest first
   int connections = 0;
+  int socket_sessions = 0;  // with those that are not open yet or no more
+  bool is_closing = false;
   asio::io_context io{1};
   tcp::acceptor acceptor{io};
-  asio::steady_timer timer{io}, accept_timer{io};
+  asio::steady_timer timer{io}, accept_timer{io}, closing_timer{io};
   std::vector<std::shared_ptr<SocketSession>> sessions;
   std::thread thread;
 };
@@ -126,7 +132,12 @@ struct SocketServer::State {
 /// A client. Has at most one message on its way; what happens meanwhile is in the next one.
 class SocketSession : public std::enable_shared_from_this<SocketSession> {
  public:
-  SocketSession(SocketServer::State& server, tcp::socket socket) : server_(server), stream_(std::move(socket)) {}
+  SocketSession(SocketServer::State& server, tcp::socket socket) : server_(server), stream_(std::move(socket)) {
+    ++server_.socket_sessions;
+  }
+  ~SocketSession() { --server_.socket_sessions; }
+  SocketSession(const SocketSession&) = delete;
+  SocketSession& operator=(const SocketSession&) = delete;
 
   void accept(const http::request<http::empty_body>& request, const std::string& protocol) {
     stream_.set_option(websocket::stream_base::timeout{request_time, idle_time, true});
@@ -137,29 +148,34 @@ class SocketSession : public std::enable_shared_from_this<SocketSession> {
     stream_.read_message_max(server_.options.longest_message);
     stream_.auto_fragment(false);
     stream_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
-      if (error) return;
+      if (error || self->server_.is_closing) return;
       self->client_ = self->server_.handlers.open();
       self->server_.add(self);
       self->read();
       self->send();
     });
   }
-  /// Sends what the client lacks, unless a message is on its way.
+  /// Sends what the client lacks, unless a message is on its way. At the end of the server, then says farewell.
   void send() {
     if (is_sending_ || !client_) return;
     std::optional<SocketMessage> message = client_->next();
-    if (!message) return;
+    if (!message) return server_.is_closing ? close() : void();
     outgoing_ = std::move(message->bytes);
     is_sending_ = true;
     stream_.text(message->is_text);
     stream_.async_write(asio::buffer(outgoing_), [self = shared_from_this()](beast::error_code error, std::size_t) {
       self->is_sending_ = false;
       if (error) return self->leave();
-      if (!self->server_.options.is_paced) self->send();
+      if (!self->server_.options.is_paced || self->server_.is_closing) self->send();
     });
   }
 
  private:
+  void close() {
+    is_sending_ = true;
+    stream_.async_close({websocket::close_code::going_away, "the run has ended"},
+                        [self = shared_from_this()](beast::error_code) { self->leave(); });
+  }
   void read() {
     stream_.async_read(incoming_, [self = shared_from_this()](beast::error_code error, std::size_t) {
       if (error) return self->leave();
@@ -239,7 +255,7 @@ class RequestSession : public std::enable_shared_from_this<RequestSession> {
     const std::string protocol = common_protocol(request[http::field::sec_websocket_protocol], options.protocols);
     if (protocol.empty() && !options.protocols.empty())
       return refuse(http::status::bad_request, "expected the subprotocol " + options.protocols.front());
-    if (static_cast<int>(server_.sessions.size()) >= SocketServer::max_clients)
+    if (server_.socket_sessions >= SocketServer::max_clients)
       return refuse(http::status::service_unavailable, "too many clients are connected");
     stream_.expires_never();
     std::make_shared<SocketSession>(server_, stream_.release_socket())->accept(request, protocol);
@@ -362,6 +378,18 @@ void SocketServer::State::add(const std::shared_ptr<SocketSession>& session) {
 
 void SocketServer::State::remove(const SocketSession* session) {
   std::erase_if(sessions, [&](const auto& other) { return other.get() == session; });
+  if (is_closing && sessions.empty()) io.stop();
+}
+
+/// Lets all clients take what is left, and ends the thread after that.
+void SocketServer::State::close() {
+  is_closing = true;
+  if (sessions.empty()) return io.stop();
+  closing_timer.expires_after(closing_time);
+  closing_timer.async_wait([this](beast::error_code) { io.stop(); });
+  handlers.tick();
+  const std::vector<std::shared_ptr<SocketSession>> now = sessions;  // sending can end one
+  for (const auto& session : now) session->send();
 }
 
 void SocketServer::State::run() {
@@ -389,7 +417,7 @@ SocketServer::~SocketServer() {
     const std::lock_guard lock(servers_mutex);
     std::erase(servers, this);
   }
-  state_->io.stop();
+  asio::post(state_->io, [state = state_.get()] { state->close(); });
   state_->thread.join();
 }
 

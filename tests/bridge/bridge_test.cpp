@@ -3,12 +3,17 @@
 #include "holdfast/bridge/node_parameters.hpp"
 
 #include <gmock/gmock.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <mutex>
 #include <opencv2/imgproc.hpp>
+#include <thread>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/holdfast.hpp"
@@ -349,6 +354,71 @@ TEST_F(BridgeTest, ErrorsOfTheConfigurationComeAtOnce) {
     EXPECT_THAT(error.what(), HasSubstr("schur"));
   }
 }
+
+#ifdef HOLDFAST_PLUGIN_FOXGLOVE
+/// A port that is free now.
+int free_port() {
+  const int descriptor = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(address);
+  EXPECT_EQ(bind(descriptor, reinterpret_cast<sockaddr*>(&address), size), 0);
+  EXPECT_EQ(getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  close(descriptor);
+  return ntohs(address.sin_port);
+}
+
+/// Gives a map out for a long time.
+class SlowMaps final : public Listener {
+ public:
+  void on_frame(const FrameOutput&) override { ++frames; }
+  void on_map(const MapOutput&) override {
+    if (!has_begun.exchange(true)) begun.set_value();
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  }
+  void on_grid(const GridOutput&) override {}
+  void on_message(Level, const std::string& text) override { messages.push_back(text); }
+  std::optional<Eigen::Isometry3d> odometry(Stamp) override { return std::nullopt; }
+
+  std::atomic<int> frames = 0;
+  std::promise<void> begun;
+  std::atomic<bool> has_begun = false;
+  std::vector<std::string> messages;
+};
+
+TEST_F(BridgeTest, AnObserverWithAPortSurvivesAReset) {
+  write("source: bridge\ncamera: auto\nfeatures: orb\noptimizer: schur\nobservers: [{ foxglove: { port: " +
+        std::to_string(free_port()) + ", token: abcdefgh } }]\n");
+  Parameters p = parameters();
+  p.map_interval = 0.01;
+  SlowMaps listener;
+  Bridge bridge(p, listener);
+  bridge.set_camera(office_camera());
+  const auto add = [&](std::size_t i) {
+    bridge.add_colour(message_of(office()[i].colour, "bgr8", stamp_of(office()[i])));
+    bridge.add_depth(message_of(office()[i].depth, "32FC1", stamp_of(office()[i])));
+  };
+  add(0);
+  listener.begun.get_future().wait();
+  bridge.reset();  // while the map of the old session is given out
+  add(1);
+  bridge.finish();
+  EXPECT_EQ(listener.frames, 2);
+  EXPECT_THAT(listener.messages, testing::ElementsAre(HasSubstr("foxglove: ws://127.0.0.1:"), HasSubstr("token=abc")));
+}
+
+TEST_F(BridgeTest, AnObserverThatWaitsIsRefused) {
+  write("source: bridge\ncamera: auto\nfeatures: orb\noptimizer: schur\nobservers: [{ foxglove: { wait: true } }]\n");
+  try {
+    Bridge bridge(parameters(), recorder_);
+    FAIL() << "no error";
+  } catch (const ConfigurationError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("pipeline.yaml:5"));
+    EXPECT_THAT(error.what(), HasSubstr("'foxglove' has wait: true"));
+  }
+}
+#endif
 
 TEST_F(BridgeTest, TheSourceOfAConfigurationIsReplacedAndItsCameraCounts) {
   write(

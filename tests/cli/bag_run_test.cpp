@@ -101,5 +101,51 @@ TEST(BagRunTest, ARunOnARecordedBagIsTheRunOnItsSource) {
               testing::HasSubstr("expected a name that ends with .mcap"));
 }
 
+constexpr const char* office =
+    "source: { simulated: { duration: 0.2 } }\ncamera: { width: 160, height: 120, fx: 130, fy: 130, cx: 80, cy: 60 }\n"
+    "features: orb\noptimizer: schur\n";
+
+TEST(BagRunTest, WhatARecordingReadsIsNeverReplaced) {
+  const test::Program program;
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& expected) {
+    const test::Outcome outcome = program.run(arguments);
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.errors, testing::HasSubstr(expected));
+    EXPECT_THAT(outcome.errors, testing::Not(testing::HasSubstr("--overwrite")));
+  };
+  program.write("office.yaml", office);
+  for (const char* bag : {"office.mcap", "./office.mcap"}) {
+    refused({"record", "office.yaml", "--bag", bag}, "office.yaml: is the configuration of this recording");
+    refused({"record", "office.yaml", "--bag", bag, "--overwrite"}, "name another bag");
+  }
+  EXPECT_EQ(program.text("office.yaml"), office);
+  ASSERT_EQ(program.run({"record", "office.yaml", "--bag", "bag/first.mcap", "--quiet"}).exit_code, 0);
+  const std::string before = program.text("bag/first.mcap");
+  for (const char* path : {"bag/first.mcap", "bag"}) {
+    program.write("again.yaml",
+                  std::string("source: { rosbag: { path: ") + path + " } }\nfeatures: orb\noptimizer: schur\n");
+    refused({"record", "again.yaml", "--bag", "bag/first.mcap", "--overwrite"}, "is a file of the source");
+  }
+  EXPECT_TRUE(program.text("bag/first.mcap") == before);
+}
+
+TEST(BagRunTest, NegativeTimesAreShifted) {
+  const test::Program program;
+  program.write("office.yaml", office);
+  ASSERT_EQ(program.run({"record", "office.yaml", "--output", "folder", "--quiet"}).exit_code, 0);
+  const std::string pairs = program.text("folder/associations.txt");
+  program.write("folder/associations.txt",  // the depth before time 0, and before the colour
+                "0.010000 rgb/0.000000.png -0.005000 depth/0.000000.png\n" + pairs.substr(pairs.find('\n') + 1));
+  test::Outcome outcome = program.run({"record", "folder/recording.yaml", "--bag", "bag.mcap"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.errors, testing::HasSubstr("all time stamps are 1 second later than those of the source"));
+  EXPECT_THAT(program.text("bag.yaml"), testing::StartsWith("# all time stamps are 1 second later"));
+  EXPECT_THAT(program.text("bag.truth.txt"), testing::HasSubstr("\n1.0"));
+  outcome = program.run({"run", "bag.yaml", "--output", "out", "--quiet"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(program.text("out/trajectory.txt"), testing::HasSubstr("\n1.010000 "));
+  EXPECT_FALSE(program.text("out/evaluation.json").empty());
+}
+
 }  // namespace
 }  // namespace holdfast

@@ -211,6 +211,23 @@ TEST_F(WriteFaultsTest, ALimitOfTheSizeOfFilesIsAnErrorAndLeavesNoTemporaryFile)
   for (const auto& [name, content] : left) EXPECT_FALSE(ends_with(name, ".tmp")) << name;
 }
 
+TEST_F(WriteFaultsTest, ABagThatCannotBeWrittenIsOneErrorAndHasTheFilesBesideIt) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit lower{20'000, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &lower), 0);
+  const pid_t process =
+      program_.start({"record", "room.yaml", "--set", "source.simulated.duration=2", "--bag", "out/a.mcap"});
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  outcome_ = program_.finish(process);
+  EXPECT_EQ(outcome_.exit_code, 1);
+  EXPECT_THAT(outcome_.errors, ::testing::ContainsRegex("a.mcap: cannot be written: File too large\n[0-9]+ frames? "
+                                                        "recorded in out/a.mcap\n$"));
+  EXPECT_THAT(outcome_.errors, ::testing::Not(::testing::HasSubstr("60 frames")));
+  EXPECT_FALSE(program_.text("out/a.yaml").empty());
+  EXPECT_FALSE(program_.text("out/a.truth.txt").empty());
+}
+
 TEST_F(WriteFaultsTest, AReadThatFailsIsNotTheEndOfAList) {
   ASSERT_EQ(program_.run({"simulate", "--output", "rec", "--duration", "0.2", "--camera", "tum_fr1"}).exit_code, 0);
   program_.write("rec.yaml",

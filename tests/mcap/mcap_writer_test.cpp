@@ -38,7 +38,7 @@ void write_run(mcap::MessageSink& sink) {
   }
   Map map;
   map.add_point(Eigen::Vector3d(1, 2, 3), 0);
-  messages.add_map(make_snapshot(map));
+  messages.add_map(make_snapshot(map), messages.time());
 }
 
 // Every message is checked against the schema in the file, and against that which Foxglove publishes.

@@ -2,14 +2,12 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <future>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <thread>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/interfaces/observer.hpp"
@@ -53,26 +51,17 @@ Json heard_by_npm(const test::NpmTools& tools, const char* protocol) {
   auto live = observer({{"wait", true}, {"token", std::string("secret-1")}});
   const std::string address = running_servers().back().second;
   const std::string name = std::string("foxglove_") + protocol + "_" + std::to_string(getpid());
-  const std::filesystem::path output = std::filesystem::path(testing::TempDir()) / name,
-                              marker = output.string() + "_heard";
+  const std::filesystem::path output = std::filesystem::path(testing::TempDir()) / name;
   auto heard = std::async(std::launch::async, [&] {
-    return tools.run("node '" HOLDFAST_TEST_LISTENER "' '" + address + "' " + protocol + " '" + marker.string() + "'",
-                     output);
+    return tools.run("node '" HOLDFAST_TEST_LISTENER "' '" + address + "' " + protocol, output);
   });
-  // The first frames may come before the subscriptions do.
-  std::uint64_t index = 1000;
-  for (int i = 0; i < 1000 && !std::filesystem::exists(marker); ++i) {
-    feed(*live, index++);
-    std::this_thread::sleep_for(std::chrono::milliseconds(30));
-  }
   for (std::uint64_t i = 0; i < 3; ++i) feed(*live, i);
   Map map;
   map.add_point(Eigen::Vector3d(1, 2, 3), 0);
   live->on_finish(map);
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));
   live.reset();
   const std::optional<std::string> said = heard.get();
-  for (const auto& file : {output, marker}) std::filesystem::remove(file);
+  std::filesystem::remove(output);
   EXPECT_TRUE(said) << "the client failed";
   return said ? Json::parse(*said) : Json();
 }
@@ -93,8 +82,11 @@ TEST(FoxgloveTest, TheClientOfFoxgloveGetsARun) {
     EXPECT_THAT(heard["statuses"], Contains("there is no such subscription"));
     EXPECT_THAT(heard["statuses"], Contains(HasSubstr("channelId of an advertised channel")));
     const Json& topics = heard["topics"];
-    EXPECT_GE(topics["/camera/pose"]["count"], 3);
+    EXPECT_EQ(topics["/camera/pose"]["count"], 3) << "all frames, since the first one waited";
+    EXPECT_EQ(topics["/camera/pose"]["first"], "1500000000");
     EXPECT_EQ(topics["/camera/pose"]["time"], "1700000000");
+    EXPECT_EQ(topics["/log"]["count"], 1);
+    EXPECT_EQ(heard["end"], 1001) << "the server goes away, after all messages";
     EXPECT_EQ(topics["/camera/pose"]["last"]["pose"]["position"]["z"], 2.0);
     EXPECT_EQ(topics["/camera/image"]["last"]["format"], "jpeg");
     EXPECT_EQ(topics["/map/points"]["count"], 1);
@@ -181,14 +173,15 @@ TEST_F(LiveClientTest, SendsOnlyWhatIsSubscribedTo) {
   EXPECT_EQ(texts[0]["op"], "serverInfo");
   EXPECT_EQ(texts[1]["channels"][1]["topic"], "/map/points");
   EXPECT_FALSE(channels_.wants(pose_));
-  EXPECT_TRUE(channels_.wants(points_)) << "the state of the map is kept";
-  channels_.write(points_, 5, "map");
+  channels_.write_state(points_, 4, [] { return ADD_FAILURE() << "is made for nobody", "map"; });
+  channels_.write_state(points_, 5, [] { return "map"; });
   hand_out(client);
   EXPECT_FALSE(client.next());
 
   EXPECT_TRUE(
       client.receive(R"({"op":"subscribe","subscriptions":[{"id":7,"channelId":1},{"id":8,"channelId":2}]})", true));
   EXPECT_TRUE(channels_.wants(pose_));
+  EXPECT_EQ(channels_.subscriptions(), 2);
   channels_.write(pose_, 0x0102030405060708, "pose");
   hand_out(client);
   const auto messages = drain(client).second;
@@ -220,6 +213,48 @@ TEST_F(LiveClientTest, AnswersWhatItDoesNotKnow) {
   EXPECT_TRUE(client.receive("\x01", false));
   EXPECT_TRUE(client.next());
   EXPECT_FALSE(channels_.wants(pose_));
+}
+
+// The last state comes with the subscription, and is not sent once more when it is handed out.
+TEST_F(LiveClientTest, SendsNothingTwice) {
+  LiveClient client(channels_, "session");
+  drain(client);
+  channels_.write_state(points_, 5, [] { return "map"; });
+  const char* subscribe = R"({"op":"subscribe","subscriptions":[{"id":8,"channelId":2}]})";
+  client.receive(subscribe, true);
+  hand_out(client);
+  EXPECT_EQ(drain(client).second.size(), 1U);
+  client.receive(R"({"op":"unsubscribe","subscriptionIds":[8]})", true);
+  client.receive(subscribe, true);
+  EXPECT_EQ(drain(client).second.size(), 1U);
+}
+
+TEST(FoxgloveTest, WhoComesLaterGetsTheHealth) {
+  LiveChannels channels;
+  mcap::RunMessages messages(channels, {}, Camera());
+  messages.add_frame({}, {}, FrameResult());
+  channels.take_messages();
+  LiveClient client(channels, "session");
+  for (int i = 0; i < 2; ++i) ASSERT_TRUE(client.next());
+  client.receive(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":2}]})", true);
+  const std::optional<SocketMessage> message = client.next();
+  ASSERT_TRUE(message);
+  EXPECT_THAT(message->bytes, HasSubstr("\"name\":\"health\""));
+  EXPECT_FALSE(client.next()) << "no state of a frame that is over";
+}
+
+// As deep as the longest message that a server takes can nest.
+TEST_F(LiveClientTest, RefusesDeepNesting) {
+  LiveClient client(channels_, "session");
+  drain(client);
+  const std::string deep(32'000, '[');
+  for (const char* list : {"subscriptions", "subscriptionIds"}) {
+    const std::string op = std::string(list) == "subscriptions" ? "subscribe" : "unsubscribe";
+    client.receive(R"({"op":")" + op + R"(",")" + list + "\":" + deep + std::string(32'000, ']') + "}", true);
+    const auto [texts, messages] = drain(client);
+    ASSERT_EQ(texts.size(), 1U);
+    EXPECT_EQ(texts[0]["level"], 2);
+  }
 }
 
 TEST_F(LiveClientTest, DropsTheOldestForASlowClient) {

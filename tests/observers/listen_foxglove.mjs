@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Foxglove's own client (npm: @foxglove/ws-protocol) on a live connection: node listen_foxglove.mjs ADDRESS PROTOCOL MARKER, in
-// the folder of node_modules. Subscribes to all topics, makes the file MARKER with the first message, and when the server closes prints, as JSON, what it got: the information, the channels, the status messages, and for each topic the number of
+// Foxglove's own client (npm: @foxglove/ws-protocol) on a live connection: node listen_foxglove.mjs ADDRESS PROTOCOL, in
+// the folder of node_modules. Subscribes to all topics, and when the server closes prints, as JSON, what it got: the code of the end, the information, the channels, the status messages, and for each topic the number of
 // messages, their first and last time, and the last message.
 import { createRequire } from "node:module";
-import fs from "node:fs";
 import path from "node:path";
 
 const require = createRequire(path.join(process.cwd(), "package.json"));
 const { FoxgloveClient } = require("@foxglove/ws-protocol");
 const WebSocket = require("ws");
 
-const [address, protocol, marker] = process.argv.slice(2);
+const [address, protocol] = process.argv.slice(2);
 const socket = new WebSocket(address, [protocol]);
 const client = new FoxgloveClient({ ws: socket });
 const found = { statuses: [], topics: {} };
@@ -32,13 +31,13 @@ client.on("advertise", (channels) => {
   client.subscribe(12345);
 });
 client.on("message", ({ subscriptionId, timestamp, data }) => {
-  fs.writeFileSync(marker, "");
   const topic = (found.topics[topicOf.get(subscriptionId)] ??= { count: 0, first: String(timestamp) });
   topic.count++;
   topic.time = String(timestamp);
   topic.last = JSON.parse(new TextDecoder().decode(data));
 });
-client.on("close", () => {
+client.on("close", (event) => {
+  found.end = event.code;
   console.log(JSON.stringify(found));
   process.exit(0);
 });

@@ -26,7 +26,7 @@ enum class Compression {
 
 /// Writes an MCAP file (mcap.dev/spec): chunks of about 1 MB with their indexes, and the summary at the end. A file
 /// whose writer ended early can be read up to its last chunk. One thread; methods throw InputError with the system's
-/// reason if a write fails.
+/// reason if a write fails, and again the first one of them after that.
 class McapWriter final : public MessageSink {
  public:
   /// `profile`: conventions of topics and messages, such as "ros2"; empty = none. Replaces an existing file.
@@ -56,11 +56,12 @@ class McapWriter final : public MessageSink {
   std::string definitions() const;
   ByteWriter content_of(const ChunkIndex& chunk) const;
   std::string statistics() const;
-  [[noreturn]] void fail() const;
+  [[noreturn]] void fail();
 
   std::filesystem::path file_;
   Compression compression_;
   std::ofstream stream_;
+  std::string failure_;  // the first one; empty = none
   std::uint64_t written_ = 0;
   std::vector<Definition> channels_;  // channel i + 1 has the schema i + 1
   std::size_t channels_written_ = 0;

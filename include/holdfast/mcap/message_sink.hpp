@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -26,6 +27,11 @@ class MessageSink {
   virtual bool wants(std::uint16_t /*channel*/) const { return true; }
   /// `time`: log and publish time [ns].
   virtual void write(std::uint16_t channel, std::uint64_t time, std::string_view message) = 0;
+  /// The new state of a topic, which whoever comes later needs as well. `make` gives the message; it may be called
+  /// later, by another thread, or never.
+  virtual void write_state(std::uint16_t channel, std::uint64_t time, std::function<std::string()> make) {
+    write(channel, time, make());
+  }
 };
 
 }  // namespace holdfast::mcap

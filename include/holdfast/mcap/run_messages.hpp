@@ -18,7 +18,7 @@ namespace holdfast::mcap {
 /// keyframes and static points. plugins/observers/mcap/README.md lists the topics.
 ///
 /// The time of a message is that of the last frame. Functions throw Error if OpenCV cannot encode an image, and what
-/// the sink throws. Used by one thread at a time.
+/// the sink throws. Used by one thread at a time; only add_map() may run beside the others if the sink may.
 class RunMessages {
  public:
   /// Which images there are.
@@ -31,7 +31,8 @@ class RunMessages {
   RunMessages(MessageSink& sink, const Options& options, const Camera& camera);
 
   void add_frame(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result);
-  void add_map(const MapSnapshot& map);
+  /// `time`: of the last frame [s]. States of the map, and of the health, are given by MessageSink::write_state().
+  void add_map(MapSnapshot map, double time);
 
   /// Time stamp of the last frame [s]; 0 before the first one.
   double time() const { return time_; }

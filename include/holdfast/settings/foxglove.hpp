@@ -18,7 +18,7 @@ struct FoxgloveSettings {
   std::string listen = "127.0.0.1";  ///< numeric address; another one than loopback opens the run to other machines
   int port = 8765;                   ///< 0 = any free port
   std::string token;                 ///< secret part of the address; empty = random digits, new in each run
-  bool wait = false;                 ///< whether the first frame waits for a connection
+  bool wait = false;                 ///< whether the first frame waits for a subscription
   int image_every = 1;               ///< an image for every n-th frame; 0 = none
   int quality = 80;                  ///< JPEG quality of images, 1 to 100
   double map_interval = 1.0;         ///< minimum time between two states of the map [s]

@@ -63,7 +63,7 @@ class SocketServer {
 
   /// Throws InputError when the address cannot be listened at.
   SocketServer(Options options, Handlers handlers);
-  /// Closes all connections and ends the thread.
+  /// Lets each client take what is left, for at most 2 s, closes all connections and ends the thread.
   ~SocketServer();
   SocketServer(const SocketServer&) = delete;
   SocketServer& operator=(const SocketServer&) = delete;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <atomic>
 #include <ctime>
 #include <memory>
 #include <mutex>
@@ -31,7 +30,7 @@ std::string checked_token(const std::string& token) {
   return token.empty() ? random_token() : token;
 }
 
-/// The clients of one run. Functions are called by the thread of the server, but for count().
+/// The clients of one run. Functions are called by the thread of the server.
 class LiveClients {
  public:
   explicit LiveClients(LiveChannels& channels) : channels_(channels) {}
@@ -39,23 +38,18 @@ class LiveClients {
   std::unique_ptr<SocketClient> open() {
     auto client = std::make_unique<Registered>(*this);
     clients_.push_back(client->get());
-    count_ = static_cast<int>(clients_.size());
     return client;
   }
   void hand_out() {
     for (const auto& message : channels_.take_messages())
       for (LiveClient* client : clients_) client->add(message);
   }
-  int count() const { return count_; }
 
  private:
   class Registered final : public SocketClient {
    public:
     explicit Registered(LiveClients& clients) : clients_(clients), client_(clients.channels_, clients.session_) {}
-    ~Registered() override {
-      std::erase(clients_.clients_, &client_);
-      clients_.count_ = static_cast<int>(clients_.clients_.size());
-    }
+    ~Registered() override { std::erase(clients_.clients_, &client_); }
     Registered(const Registered&) = delete;
     Registered& operator=(const Registered&) = delete;
     std::optional<SocketMessage> next() override { return client_.next(); }
@@ -70,7 +64,6 @@ class LiveClients {
   LiveChannels& channels_;
   const std::string session_ = random_token();
   std::vector<LiveClient*> clients_;
-  std::atomic<int> count_ = 0;
 };
 
 /// Sends what a run finds to clients by Foxglove's WebSocket protocol. The tracking and the mapping thread make the
@@ -91,40 +84,43 @@ class Foxglove final : public Observer {
                 {.tick = [this] { clients_.hand_out(); }, .open = [this] { return clients_.open(); }}) {}
 
   void on_frame(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result) override {
-    if (settings_.wait && !std::exchange(has_waited_, true)) wait_for_client();
+    if (settings_.wait && !std::exchange(has_waited_, true)) wait_for_subscriptions();
     const std::lock_guard lock(mutex_);
     messages_.add_frame(sensor_frame, frame, result);
   }
 
   void on_keyframe(KeyFrameId, const ObservedMap& map) override {
-    {
-      const std::lock_guard lock(mutex_);
-      if (messages_.time() < map_time_ + settings_.map_interval) return;
-      map_time_ = messages_.time();
-    }
-    const MapSnapshot& snapshot = map.snapshot();
-    const std::lock_guard lock(mutex_);
-    messages_.add_map(snapshot);
+    const double time = last_time();
+    if (time < map_time_ + settings_.map_interval) return;
+    map_time_ = time;
+    messages_.add_map(map.snapshot(), time);
   }
 
-  void on_finish(const Map& map) override {
-    const std::lock_guard lock(mutex_);
-    messages_.add_map(make_snapshot(map));
-  }
+  void on_finish(const Map& map) override { messages_.add_map(make_snapshot(map), last_time()); }
 
  private:
-  /// Or until this thread handles a signal, which ends a sleep.
-  void wait_for_client() const {
+  double last_time() const {
+    const std::lock_guard lock(mutex_);
+    return messages_.time();
+  }
+  /// Until there is a subscription, and for 0.2 s no further one: clients send one request for each topic. Or until
+  /// this thread handles a signal, which ends a sleep.
+  void wait_for_subscriptions() const {
     const std::timespec nap{0, 20'000'000};
-    while (clients_.count() == 0)
+    constexpr int quiet_naps = 10;
+    int known = 0;
+    for (int quiet = 0; quiet < quiet_naps; ++quiet) {
       if (nanosleep(&nap, nullptr) != 0) return;
+      const int subscriptions = channels_.subscriptions();
+      if (subscriptions == 0 || std::exchange(known, subscriptions) != subscriptions) quiet = 0;
+    }
   }
 
   FoxgloveSettings settings_;
   LiveChannels channels_;
-  std::mutex mutex_;  // of messages_ and map_time_
+  mutable std::mutex mutex_;  // of messages_, but for add_map()
   mcap::RunMessages messages_;
-  double map_time_ = -1e300;  // of the last map [s]
+  double map_time_ = -1e300;  // of the last map [s]; used by the mapping thread
   bool has_waited_ = false;
   LiveClients clients_;
   SocketServer server_;  // last: its thread uses everything above

@@ -13,7 +13,7 @@ void FoxgloveSettings::describe(ParameterTable<FoxgloveSettings>& table) {
   table.add("port", &S::port, "port to listen at; 0 = any free one").range(0, 65535);
   table.add("token", &S::token,
             "secret part of the address, of letters, digits, - and _; empty = random digits, new in each run");
-  table.add("wait", &S::wait, "wait for a connection before the first frame");
+  table.add("wait", &S::wait, "wait before the first frame until a client has subscribed to topics");
   table
       .add("image_every", &S::image_every,
            "an image and its moving cells are sent for every frame whose index is a multiple of this number; 0 = no "

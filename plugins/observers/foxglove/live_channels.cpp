@@ -5,13 +5,6 @@
 
 namespace holdfast::foxglove_plugin {
 
-namespace {
-
-/// States, not events: a client that subscribes later needs the last one.
-bool is_of_map(const mcap::Channel& channel) { return channel.topic.starts_with("/map/"); }
-
-}  // namespace
-
 std::uint16_t LiveChannels::add_channel(const mcap::Channel& channel) {
   const std::lock_guard lock(mutex_);
   channels_.push_back(channel);
@@ -21,13 +14,22 @@ std::uint16_t LiveChannels::add_channel(const mcap::Channel& channel) {
 bool LiveChannels::wants(std::uint16_t channel) const {
   const std::lock_guard lock(mutex_);
   const auto found = subscriptions_.find(channel);
-  return is_of_map(channels_[channel - 1U]) || (found != subscriptions_.end() && found->second > 0);
+  return found != subscriptions_.end() && found->second > 0;
 }
 
 void LiveChannels::write(std::uint16_t channel, std::uint64_t time, std::string_view message) {
-  auto shared = std::make_shared<const LiveMessage>(LiveMessage{channel, time, std::string(message)});
+  auto shared = std::make_shared<LiveMessage>(channel, time, std::string(message));
   const std::lock_guard lock(mutex_);
-  if (is_of_map(channels_[channel - 1U])) last_[channel] = shared;
+  shared->number = ++written_;
+  messages_.push_back(std::move(shared));
+}
+
+void LiveChannels::write_state(std::uint16_t channel, std::uint64_t time, std::function<std::string()> make) {
+  auto shared = std::make_shared<LiveMessage>(channel, time, std::move(make));
+  std::shared_ptr<const LiveMessage> earlier;  // its content is freed without the lock
+  const std::lock_guard lock(mutex_);
+  shared->number = ++written_;
+  earlier = std::exchange(last_[channel], shared);
   messages_.push_back(std::move(shared));
 }
 
@@ -50,6 +52,13 @@ std::shared_ptr<const LiveMessage> LiveChannels::last_of(std::uint16_t channel) 
 void LiveChannels::count_subscription(std::uint16_t channel, int difference) {
   const std::lock_guard lock(mutex_);
   subscriptions_[channel] += difference;
+}
+
+int LiveChannels::subscriptions() const {
+  const std::lock_guard lock(mutex_);
+  int sum = 0;
+  for (const auto& [channel, count] : subscriptions_) sum += count;
+  return sum;
 }
 
 }  // namespace holdfast::foxglove_plugin

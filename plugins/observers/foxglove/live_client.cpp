@@ -21,9 +21,24 @@ std::optional<std::uint32_t> number_in(const Json& request, const char* name) {
 }
 
 /// The entries of a list in a request; none if there is no list.
-Json list_in(const Json& request, const char* name) {
+const Json& list_in(const Json& request, const char* name) {
+  static const Json none = Json::array();
   const auto found = request.find(name);
-  return found != request.end() && found->is_array() ? *found : Json::array();
+  return found != request.end() && found->is_array() ? *found : none;
+}
+
+/// What a client sent; null if that is no JSON, or nested more deeply than any request.
+Json parsed(std::string_view message) {
+  constexpr int deepest = 16;
+  bool is_too_deep = false;
+  Json request = Json::parse(
+      message,
+      [&](int depth, Json::parse_event_t, const Json&) {
+        is_too_deep = is_too_deep || depth > deepest;
+        return depth <= deepest;
+      },
+      false);
+  return is_too_deep ? Json() : request;
 }
 
 Json advertisement(const std::vector<mcap::Channel>& channels) {
@@ -64,34 +79,36 @@ std::optional<SocketMessage> LiveClient::next() {
   while (!messages_.empty()) {
     const std::shared_ptr<const LiveMessage> message = std::move(messages_.front());
     messages_.pop_front();
-    waiting_ -= message->bytes.size();
+    waiting_ -= message->bytes().size();
     if (messages_.empty()) has_dropped_ = false;
     const auto subscription = subscription_of_.find(message->channel);
     if (subscription == subscription_of_.end()) continue;  // it ended meanwhile
     constexpr std::uint8_t message_data = 0x01;
     ByteWriter writer;
     writer.put(message_data);
-    writer.put(subscription->second);
+    writer.put(subscription->second.id);
     writer.put(message->time);
-    writer.put_bytes(message->bytes);
+    writer.put_bytes(message->bytes());
     return SocketMessage{writer.bytes(), false};
   }
   return std::nullopt;
 }
 
 void LiveClient::add(const std::shared_ptr<const LiveMessage>& message) {
-  if (!subscription_of_.contains(message->channel)) return;
+  const auto subscription = subscription_of_.find(message->channel);
+  if (subscription == subscription_of_.end() || message->number <= subscription->second.number) return;
+  subscription->second.number = message->number;
   messages_.push_back(message);
-  waiting_ += message->bytes.size();
+  waiting_ += message->bytes().size();
   while (waiting_ > max_waiting && messages_.size() > 1) {
-    waiting_ -= messages_.front()->bytes.size();
+    waiting_ -= messages_.front()->bytes().size();
     messages_.pop_front();
     if (!std::exchange(has_dropped_, true)) say(Level::warning, "messages are dropped: the connection is too slow");
   }
 }
 
 bool LiveClient::receive(std::string_view message, bool is_text) {
-  const Json request = is_text ? Json::parse(message, nullptr, false) : Json();
+  const Json request = is_text ? parsed(message) : Json();
   const auto op = request.is_object() ? request.find("op") : request.end();
   if (op == request.end() || !op->is_string()) {
     say(Level::error, "expected a JSON object with the field op");
@@ -120,7 +137,7 @@ void LiveClient::subscribe(const Json& request) {
       continue;
     }
     channel_of_[*id] = number;
-    subscription_of_[number] = *id;
+    subscription_of_[number] = {.id = *id};
     channels_.count_subscription(number, +1);
     if (const auto last = channels_.last_of(number)) add(last);
   }

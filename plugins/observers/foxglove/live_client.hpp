@@ -32,11 +32,15 @@ class LiveClient final : public SocketClient {
 
   std::optional<SocketMessage> next() override;
   bool receive(std::string_view message, bool is_text) override;
-  /// Queues a message if there is a subscription to its topic.
+  /// Queues a message if there is a subscription to its topic, and the client had no later one of it.
   void add(const std::shared_ptr<const LiveMessage>& message);
 
  private:
   enum class Level { information = 0, warning = 1, error = 2 };
+  struct Subscription {
+    std::uint32_t id = 0;
+    std::uint64_t number = 0;  // of the last message
+  };
   void say(Level level, const std::string& text);
   void subscribe(const nlohmann::json& request);
   void unsubscribe(const nlohmann::json& request);
@@ -47,7 +51,7 @@ class LiveClient final : public SocketClient {
   std::size_t waiting_ = 0;                            // bytes of messages_
   bool has_dropped_ = false;                           // since messages_ was empty
   std::map<std::uint32_t, std::uint16_t> channel_of_;  // a subscription
-  std::map<std::uint16_t, std::uint32_t> subscription_of_;
+  std::map<std::uint16_t, Subscription> subscription_of_;
 };
 
 }  // namespace holdfast::foxglove_plugin

@@ -50,12 +50,12 @@ class Mcap final : public Observer {
     }
     const MapSnapshot& snapshot = map.snapshot();
     const std::lock_guard lock(mutex_);
-    messages_->add_map(snapshot);
+    messages_->add_map(snapshot, messages_->time());
   }
 
   void on_finish(const Map& map) override {
     if (!messages_) return;
-    messages_->add_map(make_snapshot(map));
+    messages_->add_map(make_snapshot(map), messages_->time());
     messages_.reset();
     writer_->close();
     writer_.reset();
