@@ -28,6 +28,13 @@ void add_chain(const std::string& kind, const std::vector<ModuleChoice>& choices
   for (const ModuleChoice& choice : choices) add_module(choice, "  - ", "    ", yaml);
 }
 
+/// Results are shown to others: tokens are secrets, and without one an observer makes a new one.
+std::vector<ModuleChoice> without_tokens(std::vector<ModuleChoice> observers) {
+  for (ModuleChoice& observer : observers)
+    if (const auto token = observer.values.find("token"); token != observer.values.end()) token->second = std::string();
+  return observers;
+}
+
 }  // namespace
 
 std::string to_yaml(const Configuration& configuration) {
@@ -48,7 +55,7 @@ std::string to_yaml(const Configuration& configuration) {
   add_chain("filters", configuration.filters, yaml);
   add_choice(configuration.optimizer, yaml);
   add_choice(configuration.loop_detector, yaml);
-  add_chain("observers", configuration.observers, yaml);
+  add_chain("observers", without_tokens(configuration.observers), yaml);
   for (const auto& [name, values] : configuration.sections) {
     yaml += name + ":\n";
     add_values(values, "  ", yaml);

@@ -189,6 +189,10 @@ filters:
   const Configuration second =
       resolve_configuration(parse_yaml(yaml, "out.yaml", "/elsewhere"), "out.yaml", registry, test::test_sections());
   EXPECT_EQ(to_yaml(second), yaml);
+  Configuration secret = first;
+  secret.observers = {
+      {.kind = "observers", .name = "foxglove", .values = {{"token", std::string("hidden")}}, .location = {}}};
+  EXPECT_EQ(to_yaml(secret).find("hidden"), std::string::npos);
   EXPECT_EQ(second.source.values, first.source.values);
   EXPECT_EQ(second.features.values, first.features.values);
   ASSERT_EQ(second.filters.size(), 2U);

@@ -21,12 +21,19 @@ namespace {
 
 using namespace foxglove_plugin;
 
-std::string checked_token(const std::string& token) {
+std::string checked_token(const FoxgloveSettings& settings) {
+  constexpr std::size_t fewest = 16;  // where other machines can try
+  const std::string& token = settings.token;
   constexpr const char* allowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
   if (token.find_first_not_of(allowed) != std::string::npos)
     throw InputError({"observer 'foxglove'"},
                      "the token has characters that an address cannot have; expected letters, "
                      "digits, - and _, or nothing for a random one");
+  const bool is_loopback = settings.listen.starts_with("127.") || settings.listen == "::1";
+  if (!token.empty() && token.size() < fewest && !is_loopback)
+    throw InputError({"observer 'foxglove'"}, "the token has " + std::to_string(token.size()) +
+                                                  " characters; expected at least 16 where other machines can connect, "
+                                                  "or nothing for a random one");
   return token.empty() ? random_token() : token;
 }
 
@@ -78,7 +85,7 @@ class Foxglove final : public Observer {
                  .scheme = "ws",
                  .listen = settings.listen,
                  .port = settings.port,
-                 .token = checked_token(settings.token),
+                 .token = checked_token(settings),
                  .protocols = {"foxglove.websocket.v1", "foxglove.sdk.v1"},
                  .longest_message = 1U << 16},
                 {.tick = [this] { clients_.hand_out(); }, .open = [this] { return clients_.open(); }}) {}

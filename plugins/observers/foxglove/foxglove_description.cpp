@@ -12,7 +12,8 @@ void FoxgloveSettings::describe(ParameterTable<FoxgloveSettings>& table) {
             "numeric address to listen at; another one than 127.0.0.1 opens the run to other machines");
   table.add("port", &S::port, "port to listen at; 0 = any free one").range(0, 65535);
   table.add("token", &S::token,
-            "secret part of the address, of letters, digits, - and _; empty = random digits, new in each run");
+            "secret part of the address, of letters, digits, - and _, not kept in results; 16 or more unless `listen` "
+            "is a loopback address; empty = random digits, new in each run");
   table.add("wait", &S::wait, "wait before the first frame until a client has subscribed to topics");
   table
       .add("image_every", &S::image_every,
