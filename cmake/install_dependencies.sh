@@ -145,7 +145,7 @@ fi
 
 # Fails where this system has no package, and says what to do without it: Ubuntu has no browser outside of snaps; Ubuntu
 # 24.04 and Debian 13 have no ROS 1, and Ubuntu 24.04 has no python3-torch.
-leave_out_absent() {
+require_candidates() {
   present="" absent="" absent_basic=""
   for package in $missing; do
     case $(LC_ALL=C apt-cache policy "$package" 2>/dev/null | sed -n 's/^  Candidate: //p') in
@@ -172,7 +172,7 @@ run_apt() { $as_root env DEBIAN_FRONTEND=noninteractive apt-get "$@"; }
 if [ -n "$missing" ]; then
   say "installing: $missing"
   run_apt update --quiet || fail "apt-get update failed; is there a network, and are the package sources right?"
-  leave_out_absent
+  require_candidates
   run_apt install --quiet --yes --no-install-recommends $missing ||
     fail "apt-get install failed. These were wanted: $missing"
 fi

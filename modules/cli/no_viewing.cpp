@@ -15,7 +15,6 @@ constexpr const char* reason =
 
 void add_viewer(Configuration&, const Registry&) { throw PluginError(reason); }
 std::vector<std::shared_ptr<Viewer>> running_viewers_of_program() { return {}; }
-void print_addresses(const std::vector<std::shared_ptr<Viewer>>&) {}
 void show_until_stopped(const std::vector<std::shared_ptr<Viewer>>&, const RunRecord&) {}
 void show_results_until_stopped(const std::filesystem::path&, const std::string&, int) { throw PluginError(reason); }
 

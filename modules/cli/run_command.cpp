@@ -22,6 +22,7 @@
 #include "output_folder.hpp"
 #include "program_host.hpp"
 #include "recorder.hpp"
+#include "server_addresses.hpp"
 #include "terminal.hpp"
 #include "usage_error.hpp"
 #include "viewing.hpp"

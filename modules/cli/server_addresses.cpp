@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "server_addresses.hpp"
+
 #include <cstdio>
 
-#include "viewing.hpp"
 #ifdef HOLDFAST_WEB_SERVER
 #include "holdfast/web_server/socket_server.hpp"
 #endif

@@ -9,6 +9,7 @@
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/viewer/viewer.hpp"
+#include "server_addresses.hpp"
 #include "terminal.hpp"
 #include "viewed_run.hpp"
 
@@ -38,16 +39,11 @@ void add_viewer(Configuration& configuration, const Registry& registry) {
 
 std::vector<std::shared_ptr<Viewer>> running_viewers_of_program() { return running_viewers(); }
 
-void print_addresses(const std::vector<std::shared_ptr<Viewer>>& viewers) {
-  for (const auto& viewer : viewers) std::printf("%-20s %s\n", "viewer", viewer->address().c_str());
-  std::fflush(stdout);  // whoever reads it through a pipe wants to look now
-}
-
 void show_until_stopped(const std::vector<std::shared_ptr<Viewer>>& viewers, const RunRecord& record) {
   for (const auto& viewer : viewers) viewer->set_run(viewed_run(record));
   if (viewers.empty() || record.was_interrupted) return;
   std::printf("%-20s %s\n", "", "shows the result until Ctrl-C");
-  print_addresses(viewers);
+  print_server_addresses();
   wait_for_end();
 }
 
@@ -62,7 +58,7 @@ void show_results_until_stopped(const std::filesystem::path& results, const std:
   }
   if (found.map) viewer->set_map(std::move(*found.map), 0.0);
   viewer->set_run(std::move(found.run));
-  print_addresses({viewer});
+  print_server_addresses();
   std::printf("%-20s %s\n", "", "until Ctrl-C");
   std::fflush(stdout);
   wait_for_end();

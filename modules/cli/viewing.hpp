@@ -21,10 +21,6 @@ struct ViewedRun;
 void add_viewer(Configuration& configuration, const Registry& registry);
 /// The viewers that serve now.
 std::vector<std::shared_ptr<Viewer>> running_viewers_of_program();
-/// Where to look, a line for each.
-void print_addresses(const std::vector<std::shared_ptr<Viewer>>& viewers);
-/// Those of all servers of the process, such as that of the observer `foxglove`.
-void print_server_addresses();
 /// Shows a run that has ended in them, until a signal asks for the end.
 void show_until_stopped(const std::vector<std::shared_ptr<Viewer>>& viewers, const RunRecord& record);
 /// Shows the results in a folder, or a map, until a signal asks for the end. Throws InputError for what is neither.
