@@ -6,14 +6,15 @@
 #include <cstdio>
 #include <string_view>
 
+#include "holdfast/core/health_reason_names.hpp"
+
 namespace holdfast {
 
 void RunSummary::add(const FrameResult& result, double decode_seconds) {
   ++frames_;
   ++statuses_[result.status];
   ++health_[result.health.state];
-  for (int i = 0; i < health_reasons; ++i)
-    if (const auto reason = static_cast<HealthReason>(i); result.health.reasons.has(reason)) ++reasons_[reason];
+  for (const HealthReason reason : reasons_in(result.health.reasons)) ++reasons_[reason];
   largest_jump_ = std::max(largest_jump_, result.health.jump);
   if (result.status == TrackingStatus::lost || result.status == TrackingStatus::waiting) ++failures_[result.failure];
   if (result.status == TrackingStatus::tracked) {
@@ -43,7 +44,6 @@ std::uint64_t count_in(const std::map<Key, std::uint64_t>& counts, Key key) {
 std::uint64_t RunSummary::count(TrackingStatus status) const { return count_in(statuses_, status); }
 std::uint64_t RunSummary::count(TrackingFallback fallback) const { return count_in(fallbacks_, fallback); }
 std::uint64_t RunSummary::count(HealthState state) const { return count_in(health_, state); }
-std::uint64_t RunSummary::count(HealthReason reason) const { return count_in(reasons_, reason); }
 
 double RunSummary::mean_inliers() const {
   const std::uint64_t tracked_frames = count(TrackingStatus::tracked);

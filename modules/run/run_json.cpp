@@ -136,9 +136,7 @@ Json health_json(const RunSummary& summary) {
                                   HealthState::relocalised, HealthState::lost, HealthState::waiting})
     json[to_string(state)] = summary.count(state);
   Json& reasons = json["reasons"] = Json::object();
-  for (int i = 0; i < health_reasons; ++i)
-    if (const auto reason = static_cast<HealthReason>(i); summary.count(reason) > 0)
-      reasons[to_string(reason)] = summary.count(reason);
+  for (const auto& [reason, frames] : summary.reasons()) reasons[to_string(reason)] = frames;
   json["largest_jump"] = summary.largest_jump();
   return json;
 }

@@ -93,10 +93,8 @@ std::string advice_to_restart(const RunRecord& record) {
 
 std::string reasons_text(const RunSummary& summary) {
   std::string text;
-  for (int i = 0; i < health_reasons; ++i)
-    if (const auto reason = static_cast<HealthReason>(i); summary.count(reason) > 0)
-      text += (text.empty() ? " (frames not good: " : ", ") + std::to_string(summary.count(reason)) + " " +
-              to_string(reason);
+  for (const auto& [reason, frames] : summary.reasons())
+    text += (text.empty() ? " (frames not good: " : ", ") + std::to_string(frames) + " " + to_string(reason);
   return text.empty() ? "" : text + ")";
 }
 

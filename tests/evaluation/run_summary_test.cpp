@@ -41,7 +41,7 @@ TEST(RunSummary, CountsHealth) {
   summary.add(result, 0.0);
   EXPECT_EQ(summary.count(HealthState::degraded), 1U);
   EXPECT_EQ(summary.count(HealthState::good), 0U);
-  EXPECT_EQ(summary.count(HealthReason::few_inliers), 1U);
+  EXPECT_EQ(summary.reasons().at(HealthReason::few_inliers), 1U);
   EXPECT_EQ(summary.largest_jump(), 0.3);
 }
 

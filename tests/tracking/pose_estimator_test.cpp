@@ -11,15 +11,10 @@
 #include "holdfast/tracking/frame_builder.hpp"
 #include "holdfast/tracking/image_depth.hpp"
 #include "support/point_world.hpp"
+#include "support/pose_optimizer.hpp"
 
 namespace holdfast {
 namespace {
-
-class DefaultOptimizer final : public Optimizer {
- public:
-  BundleSummary optimize_bundle(BundleProblem&, const std::atomic<bool>&) override { return {}; }
-  GraphSummary optimize_pose_graph(PoseGraphProblem&) override { return {}; }
-};
 
 class NoEvidence final : public DynamicFilter {
  public:
@@ -67,7 +62,7 @@ struct RoomAndPerson {
     FilterChain filters{EvidenceSettings()};
     if (with_filter) filters.add("none", std::make_unique<NoEvidence>());
     MovingWorld moving_world({.camera = world.camera(), .filters = std::move(filters), .has_depth = false}, map);
-    DefaultOptimizer optimizer;
+    test::PoseOptimizer optimizer;
     const TrackingSettings settings;
     PoseEstimator estimator(settings, optimizer, moving_world, map);
     std::vector<OdometryMatch> odometry;

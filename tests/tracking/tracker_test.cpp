@@ -11,19 +11,13 @@
 #include "holdfast/tracking/no_depth.hpp"
 #include "support/brute_force_detector.hpp"
 #include "support/point_world.hpp"
+#include "support/pose_optimizer.hpp"
 
 namespace holdfast {
 namespace {
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-
-/// The motion-only adjustment that every optimizer has by default; a tracker needs no more.
-class PoseOptimizer final : public Optimizer {
- public:
-  BundleSummary optimize_bundle(BundleProblem&, const std::atomic<bool>&) override { return {}; }
-  GraphSummary optimize_pose_graph(PoseGraphProblem&) override { return {}; }
-};
 
 /// Extracts every n-th feature of the world and none without light.
 class SparseExtractor final : public FeatureExtractor {
@@ -125,7 +119,7 @@ class Bench {
   SparseExtractor extractor{world};
   /// The depth of this world consists of patches around points, all of whose borders are depth edges.
   ImageDepth depth{world.camera(), 0.0};
-  PoseOptimizer optimizer;
+  test::PoseOptimizer optimizer;
   test::BruteForceDetector detector;
   Map map;
   MovingWorld moving_world;

@@ -28,7 +28,7 @@ enum class HealthReason : std::uint8_t {
   few_features,   ///< the image has few static features, as of a blurred or dark image or a bare wall; explains only
   hidden_view,    ///< masks or filters mark more than half of the view as movable or moving; explains only
 };
-inline constexpr int health_reasons = 7;
+inline constexpr int health_reason_count = 7;
 
 const char* to_string(HealthState state);
 const char* to_string(HealthReason reason);

@@ -8,11 +8,18 @@
 
 namespace holdfast {
 
-/// Names of the reasons in a set, in the order of HealthReason.
-inline std::vector<std::string> names_of(const HealthReasons& reasons) {
+/// The reasons in a set, in the order of HealthReason.
+inline std::vector<HealthReason> reasons_in(const HealthReasons& set) {
+  std::vector<HealthReason> reasons;
+  for (int i = 0; i < health_reason_count; ++i)
+    if (const auto reason = static_cast<HealthReason>(i); set.has(reason)) reasons.push_back(reason);
+  return reasons;
+}
+
+/// Their names.
+inline std::vector<std::string> names_of(const HealthReasons& set) {
   std::vector<std::string> names;
-  for (int i = 0; i < health_reasons; ++i)
-    if (const auto reason = static_cast<HealthReason>(i); reasons.has(reason)) names.emplace_back(to_string(reason));
+  for (const HealthReason reason : reasons_in(set)) names.emplace_back(to_string(reason));
   return names;
 }
 

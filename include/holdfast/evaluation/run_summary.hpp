@@ -47,8 +47,8 @@ class RunSummary {
   std::uint64_t count(TrackingFallback fallback) const;
   const std::map<TrackingFailure, std::uint64_t>& failures() const { return failures_; }
   std::uint64_t count(HealthState state) const;
-  /// Number of frames in states other than good with this reason.
-  std::uint64_t count(HealthReason reason) const;
+  /// Numbers of frames in states other than good, by reason.
+  const std::map<HealthReason, std::uint64_t>& reasons() const { return reasons_; }
   /// Largest FrameHealth::jump, in the unit of the map.
   double largest_jump() const { return largest_jump_; }
   double mean_inliers() const;
