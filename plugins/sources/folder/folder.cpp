@@ -120,89 +120,71 @@ FolderFrames find_frames(const FolderSettings& settings) {
   return frames;
 }
 
+/// The camera that a recording brings, and how its pairs are rectified.
+struct FolderCamera {
+  std::optional<Camera> camera;
+  std::shared_ptr<const StereoRectification> rectification;
+};
+
+FolderCamera read_camera(const FolderSettings& settings, const Camera& configured) {
+  if (settings.intrinsics.empty()) return {};
+  CameraFile file = read_camera_file(settings.intrinsics, configured, "source.folder.intrinsics");
+  if (settings.stamps.empty()) file.camera.frame_rate = settings.frame_rate;
+  if (settings.right.empty() || !file.pair) return {file.camera, nullptr};
+  if (!settings.depth.empty())
+    throw InputError({settings.intrinsics.string()},
+                     "has a camera 'right', to which both images are rectified, and `depth` gives depth images, which "
+                     "are not; expected one of the two; leave out `depth`, or the key 'right'");
+  file.pair->left.frame_rate = file.camera.frame_rate;
+  try {
+    const auto rectification = std::make_shared<const StereoRectification>(*file.pair);
+    return {rectification->camera(), rectification};
+  } catch (const Error& error) {
+    throw InputError({settings.intrinsics.string()}, error.what());
+  }
+}
+
+struct FolderRecording {
+  FolderCamera own;
+  FolderFrames frames;
+};
+
+ImageSequenceOptions options_of(const FolderSettings& settings, const FolderCamera& own, const Camera& configured) {
+  const Camera& camera = own.camera ? *own.camera : configured;
+  ImageSequenceOptions options{
+      {settings.depth_factor, settings.invalid_depth}, camera.width, camera.height, settings.skips_bad_frames()};
+  options.invalid_depth_key = "source.folder.invalid_depth";
+  options.rectification = own.rectification;
+  options.scales_depth = settings.scale_depth;
+  options.stamps_are_read = !settings.stamps.empty();
+  return options;
+}
+
 /// Numbered images in folders.
-class FolderSource final : public FrameSource {
+class FolderSource final : public ImageSequenceSource {
  public:
   FolderSource(const FolderSettings& settings, const CreationContext& context)
-      : description_(describe(settings, context.camera)),
-        frames_(find_frames(settings)),
-        sequence_(open(settings, context.camera)) {
-    description_.frame_count = sequence_.size();
-    description_.frame_timestamps = sequence_.timestamps();
-    read_imu(settings, context.imu);
-    if (!settings.truth.empty()) truth_ = read_frame_poses(settings.truth, frames_.numbered, frames_.image_count);
-    if (rectification_ == nullptr) return;
-    for (TimedPose& pose : truth_) pose.T_world_camera = pose.T_world_camera * rectification_->T_left_rectified();
-    if (!truth_.empty()) description_.truth_frame = "transformed";
-  }
-
-  SourceDescription describe() const override { return description_; }
-  std::optional<SensorFrame> next() override {
-    std::optional<SensorFrame> frame = sequence_.next();
-    if (frame) imu_.add_to(*frame);
-    return frame;
-  }
-  std::vector<double> pass_over(double timestamp) override { return sequence_.pass_over(timestamp); }
-  Trajectory truth() const override { return truth_; }
-  std::vector<SkippedFrame> skipped() const override { return sequence_.skipped(); }
-  Warnings warnings() const override {
-    Warnings warnings = sequence_.warnings();
-    add_warnings(warnings, imu_.warnings());
-    return warnings;
-  }
+      : FolderSource(settings, context, {read_camera(settings, context.camera), find_frames(settings)}) {}
 
  private:
-  /// The calibration is relative to the left camera as it is, and described for the rectified one.
-  void read_imu(const FolderSettings& settings, std::optional<ImuCalibration> calibration) {
-    if (calibration && rectification_ != nullptr)
-      calibration->T_body_camera = calibration->T_body_camera * rectification_->T_left_rectified();
-    imu_ = RecordedImu(find_imu_file(settings.path, settings.imu), calibration, description_.frame_timestamps);
-    imu_.describe(description_);
-  }
-
-  SourceDescription describe(const FolderSettings& settings, const Camera& camera) {
-    SourceDescription description;
-    description.name = folder_name(settings.path);
-    description.has_depth = !settings.depth.empty();
-    description.has_right = !settings.right.empty();
-    description.can_read_ahead = true;
-    if (settings.intrinsics.empty()) return description;
-    CameraFile file = read_camera_file(settings.intrinsics, camera, "source.folder.intrinsics");
-    if (settings.stamps.empty()) file.camera.frame_rate = settings.frame_rate;
-    description.camera = file.camera;
-    if (settings.right.empty() || !file.pair) return description;
-    if (!settings.depth.empty())
-      throw InputError(
-          {settings.intrinsics.string()},
-          "has a camera 'right', to which both images are rectified, and `depth` gives depth images, which "
-          "are not; expected one of the two; leave out `depth`, or the key 'right'");
-    file.pair->left.frame_rate = file.camera.frame_rate;
-    try {
-      rectification_ = std::make_shared<const StereoRectification>(*file.pair);
-    } catch (const Error& error) {
-      throw InputError({settings.intrinsics.string()}, error.what());
+  FolderSource(const FolderSettings& settings, const CreationContext& context, const FolderRecording& recording)
+      : ImageSequenceSource(recording.frames.files, options_of(settings, recording.own, context.camera)) {
+    description_.name = folder_name(settings.path);
+    description_.camera = recording.own.camera;
+    description_.has_depth = !settings.depth.empty();
+    description_.has_right = !settings.right.empty();
+    const FolderFrames& frames = recording.frames;
+    if (!settings.truth.empty()) truth_ = read_frame_poses(settings.truth, frames.numbered, frames.image_count);
+    std::optional<ImuCalibration> imu = context.imu;
+    if (const StereoRectification* rectification = recording.own.rectification.get()) {
+      // Calibration and truth are those of the left camera as it is; the description is of the rectified one.
+      const Eigen::Isometry3d T_left_rectified = rectification->T_left_rectified();
+      if (imu) imu->T_body_camera = imu->T_body_camera * T_left_rectified;
+      for (TimedPose& pose : truth_) pose.T_world_camera = pose.T_world_camera * T_left_rectified;
+      if (!truth_.empty()) description_.truth_frame = "transformed";
     }
-    description.camera = rectification_->camera();
-    return description;
+    read_imu(find_imu_file(settings.path, settings.imu), imu);
   }
-
-  ImageSequence open(const FolderSettings& settings, const Camera& configured) const {
-    const Camera& camera = description_.camera ? *description_.camera : configured;
-    ImageSequenceOptions options{
-        {settings.depth_factor, settings.invalid_depth}, camera.width, camera.height, settings.skips_bad_frames()};
-    options.invalid_depth_key = "source.folder.invalid_depth";
-    options.rectification = rectification_;
-    options.scales_depth = settings.scale_depth;
-    options.stamps_are_read = !settings.stamps.empty();
-    return {frames_.files, options};
-  }
-
-  std::shared_ptr<const StereoRectification> rectification_;  // first: the description needs it
-  SourceDescription description_;                             // then: the sequence needs its camera
-  FolderFrames frames_;
-  ImageSequence sequence_;
-  RecordedImu imu_;
-  Trajectory truth_;
 };
 
 }  // namespace
