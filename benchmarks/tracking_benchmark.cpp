@@ -17,6 +17,7 @@
 #include "holdfast/interfaces/feature_extractor.hpp"
 #include "holdfast/plugin/builtin.hpp"
 #include "holdfast/run/configured_pipeline.hpp"
+#include "holdfast/tracking/pair_depth.hpp"
 #include "orb_yardstick.hpp"
 
 namespace holdfast {
@@ -55,6 +56,14 @@ double thread_seconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
+/// Adds the processor time that `run` takes of the calling thread.
+template <class Run>
+void time(std::vector<double>& times, const Run& run) {
+  const double begin = thread_seconds();
+  run();
+  times.push_back(thread_seconds() - begin);
+}
+
 void tracking(benchmark::State& state, const std::string& extractor) {
   cv::setNumThreads(1);
   std::vector<double> tracking_times, orb_times;
@@ -79,11 +88,6 @@ void tracking(benchmark::State& state, const std::string& extractor) {
 void stereo_tracking(benchmark::State& state, const std::string& extractor) {
   cv::setNumThreads(1);
   std::vector<double> tracking_times, orb_times, extraction_times;
-  const auto time = [](std::vector<double>& times, const auto& run) {
-    const double begin = thread_seconds();
-    run();
-    times.push_back(thread_seconds() - begin);
-  };
   const cv::Ptr<cv::ORB> orb = cv::ORB::create(1000);
   std::vector<cv::KeyPoint> keypoints;
   Registry registry;
@@ -108,6 +112,28 @@ void stereo_tracking(benchmark::State& state, const std::string& extractor) {
   state.counters["both_images"] = (median(tracking_times) + median(extraction_times)) / median(orb_times);
 }
 
+/// Dense depth of a pair, as filters get it of every frame and the map of keyframes; processor time.
+void dense_stereo(benchmark::State& state) {
+  cv::setNumThreads(1);
+  std::vector<double> dense_times, orb_times;
+  const cv::Ptr<cv::ORB> orb = cv::ORB::create(1000);
+  std::vector<cv::KeyPoint> keypoints;
+  cv::Mat grey, descriptors;
+  for (auto _ : state) {
+    const BuiltPipeline built = build_stereo("orb");
+    PairDepth depth(built.pipeline.camera(), {.is_dense = true});
+    while (const auto frame = built.source->next()) {
+      cv::cvtColor(frame->colour, grey, cv::COLOR_BGR2GRAY);
+      time(orb_times, [&] { orb->detectAndCompute(grey, cv::noArray(), keypoints, descriptors); });
+      time(dense_times, [&] { benchmark::DoNotOptimize(depth.begin(*frame, grey)); });
+    }
+    state.SetIterationTime(std::accumulate(dense_times.begin(), dense_times.end(), 0.0));
+  }
+  state.counters["dense_ms"] = 1e3 * median(dense_times);
+  state.counters["cv_orb_ms"] = 1e3 * median(orb_times);
+  state.counters["ratio"] = median(dense_times) / median(orb_times);
+}
+
 BENCHMARK_CAPTURE(tracking, orb, std::string("orb"))->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(tracking, opencv_orb, std::string("opencv_orb"))
     ->Iterations(1)
@@ -117,6 +143,7 @@ BENCHMARK_CAPTURE(stereo_tracking, orb, std::string("orb"))
     ->Iterations(1)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);
+BENCHMARK(dense_stereo)->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace holdfast

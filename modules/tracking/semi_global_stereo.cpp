@@ -13,7 +13,24 @@ namespace {
 
 constexpr int window = 9;           // px, of the sums of differences
 constexpr int max_difference = 40;  // grey levels
-constexpr int eighths = 8;          // of the full resolution: sixteenths of a pixel of half the resolution
+constexpr int sixteenths = 16;      // of a pixel, the unit of OpenCV's disparities
+constexpr int eighths = 8;          // of a pixel of the full resolution, the same at half of it
+constexpr int step = 16;            // the number of disparities that OpenCV searches is a multiple of it
+
+/// The least number of disparities that OpenCV can search up to this one [px].
+int in_steps(double disparity) { return std::max(1, static_cast<int>(std::ceil(disparity / step))) * step; }
+
+cv::Ptr<cv::StereoSGBM> make_matcher() {
+  constexpr int block = 5;  // px
+  constexpr int uniqueness = 10, speckle_size = 60, speckle_range = 2, left_right = 1;
+  // The penalties that OpenCV's documentation recommends.
+  return cv::StereoSGBM::create(0, step, block, 8 * block * block, 32 * block * block, left_right, 0, uniqueness,
+                                speckle_size, speckle_range, cv::StereoSGBM::MODE_SGBM_3WAY);
+}
+
+void halve(const cv::Mat& image, cv::Mat& half) {
+  cv::resize(image, half, cv::Size(image.cols / 2, image.rows / 2), 0, 0, cv::INTER_AREA);
+}
 
 /// The disparity at half the resolution that belongs to a row of the full one.
 const std::int16_t* half_row(const cv::Mat& half, int row) {
@@ -22,26 +39,47 @@ const std::int16_t* half_row(const cv::Mat& half, int row) {
 
 }  // namespace
 
-SemiGlobalStereo::SemiGlobalStereo(double max_disparity, int width) {
-  constexpr int block = 5, step = 16;  // px; the number of disparities is a multiple of the step
-  constexpr int uniqueness = 10, speckle_size = 60, speckle_range = 2, left_right = 1;
-  const int wanted = static_cast<int>(std::ceil(std::min(max_disparity, 0.5 * width) / 2.0));
-  const int disparities = std::max(step, (wanted + step - 1) / step * step);
-  // The penalties that OpenCV's documentation recommends.
-  matcher_ = cv::StereoSGBM::create(0, disparities, block, 8 * block * block, 32 * block * block, left_right, 0,
-                                    uniqueness, speckle_size, speckle_range, cv::StereoSGBM::MODE_SGBM_3WAY);
-}
+SemiGlobalStereo::SemiGlobalStereo(double max_disparity, int width)
+    : disparities_(in_steps(std::min(max_disparity, 0.5 * width) / 2.0)), matcher_(make_matcher()) {}
 
 void SemiGlobalStereo::match(const cv::Mat& left, const cv::Mat& right, cv::Mat& disparity) {
-  const cv::Size half(left.cols / 2, left.rows / 2);
-  cv::resize(left, half_left_, half, 0, 0, cv::INTER_AREA);
-  cv::resize(right, half_right_, half, 0, 0, cv::INTER_AREA);
-  matcher_->compute(half_left_, half_right_, half_disparity_);
+  halve(left, half_left_);
+  halve(right, half_right_);
+  match_padded(half_left_, half_right_, needed_disparities(), half_disparity_);
   left_ = left;
   right.convertTo(right_, CV_8U, 1.0, brightness_difference());
   compare();
   refine(disparity);
   remove_occluded(disparity);
+}
+
+int SemiGlobalStereo::needed_disparities() {
+  constexpr int coarser = 4, margin = 2;
+  constexpr double least_share = 0.001;  // of the pixels
+  halve(half_left_, quarter_);
+  halve(quarter_, coarse_left_);
+  halve(half_right_, quarter_);
+  halve(quarter_, coarse_right_);
+  match_padded(coarse_left_, coarse_right_, in_steps(disparities_ / coarser), coarse_disparity_);
+  std::vector<int> counts(static_cast<std::size_t>(disparities_ / coarser + step), 0);
+  for (int row = 0; row < coarse_disparity_.rows; ++row)
+    for (int column = 0; column < coarse_disparity_.cols; ++column)
+      ++counts[static_cast<std::size_t>(
+          std::max<int>(coarse_disparity_.ptr<std::int16_t>(row)[column] / sixteenths, 0))];
+  const int least = static_cast<int>(least_share * static_cast<double>(coarse_disparity_.total()));
+  int disparity = static_cast<int>(counts.size()) - 1;
+  for (int nearer = counts.back(); disparity > 0 && nearer <= least;
+       nearer += counts[static_cast<std::size_t>(disparity)])
+    --disparity;
+  return std::min(in_steps(coarser * (disparity + margin)), disparities_);
+}
+
+void SemiGlobalStereo::match_padded(const cv::Mat& left, const cv::Mat& right, int disparities, cv::Mat& result) {
+  cv::copyMakeBorder(left, padded_left_, 0, 0, disparities, 0, cv::BORDER_REPLICATE);
+  cv::copyMakeBorder(right, padded_right_, 0, 0, disparities, 0, cv::BORDER_REPLICATE);
+  matcher_->setNumDisparities(disparities);
+  matcher_->compute(padded_left_, padded_right_, padded_disparity_);
+  padded_disparity_.colRange(disparities, padded_disparity_.cols).copyTo(result);
 }
 
 int SemiGlobalStereo::brightness_difference() const {
@@ -52,7 +90,7 @@ int SemiGlobalStereo::brightness_difference() const {
     const std::uint8_t *left = half_left_.ptr<std::uint8_t>(row), *right = half_right_.ptr<std::uint8_t>(row);
     const std::int16_t* disparity = half_disparity_.ptr<std::int16_t>(row);
     for (int column = 0; column < half_left_.cols; ++column) {
-      const int there = column - (disparity[column] + eighths) / (2 * eighths);
+      const int there = column - (disparity[column] + eighths) / sixteenths;
       if (disparity[column] < eighths || there < 0) continue;
       ++counts[static_cast<std::size_t>(left[column] - right[there] + levels)];
       ++total;
@@ -106,9 +144,10 @@ void SemiGlobalStereo::refine(cv::Mat& disparity) {
       least_to[column] = 0;
       const int found = half[std::min(column / 2, last)];
       if (found < eighths) continue;
-      std::size_t best = 0;
-      for (std::size_t k = 1; k < candidates; ++k)
-        if (cost[k][column] < cost[best][column]) best = k;
+      std::uint32_t least_and_place = ~0U;  // no branches: the order of costs is random
+      for (std::uint32_t k = 0; k < candidates; ++k)
+        least_and_place = std::min(least_and_place, cost[k][column] * std::uint32_t{candidates} + k);
+      const std::size_t best = least_and_place % candidates;
       if (best == 0 || best + 1 == candidates) continue;
       const int least = cost[best][column], before = cost[best - 1][column] - least,
                 after = cost[best + 1][column] - least, rise = std::max(before, after);
@@ -124,21 +163,23 @@ void SemiGlobalStereo::refine(cv::Mat& disparity) {
 void SemiGlobalStereo::remove_occluded(cv::Mat& disparity) {
   constexpr float tolerance = 1.5F;  // px; a slanted surface shows several disparities in one column
   const int columns = disparity.cols;
+  places_.resize(static_cast<std::size_t>(columns));
   for (int row = 0; row < disparity.rows; ++row) {
     float* values = disparity.ptr<float>(row);
-    const auto place = [&](int column) {
-      return static_cast<std::size_t>(
-          std::clamp(column - static_cast<int>(std::lround(values[column])), 0, columns - 1));
-    };
+    for (int column = 0; column < columns; ++column)
+      places_[static_cast<std::size_t>(column)] = std::max(column - static_cast<int>(values[column] + 0.5F), 0);
     const std::uint16_t* costs = least_.ptr<std::uint16_t>(row);
     best_.assign(static_cast<std::size_t>(columns), -1);
+    const auto best_of = [&](int column) -> int& {
+      return best_[static_cast<std::size_t>(places_[static_cast<std::size_t>(column)])];
+    };
     for (int column = 0; column < columns; ++column) {
       if (values[column] == 0.0F) continue;
-      int& best = best_[place(column)];
+      int& best = best_of(column);
       if (best < 0 || costs[column] < costs[best]) best = column;
     }
     for (int column = 0; column < columns; ++column)
-      if (values[column] > 0.0F && std::abs(values[best_[place(column)]] - values[column]) > tolerance)
+      if (values[column] > 0.0F && std::abs(values[best_of(column)] - values[column]) > tolerance)
         removed_.push_back(column);
     for (const int column : removed_) values[column] = 0.0F;
     removed_.clear();
