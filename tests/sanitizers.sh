@@ -128,7 +128,7 @@ END
 }
 
 test_thread() {
-  tests="pipeline_test run_library_test prefetch_test busy_threads_test stop_test"
+  tests="pipeline_test run_library_test prefetch_test busy_threads_test stop_test foxglove_test viewer_test"
   build tsan holdfast_program $tests
   for test in $tests; do
     step "tsan: $test" "build-tsan/tests/$test"

@@ -80,7 +80,7 @@ struct Bridge::State {
       is_stopped = true;
     }
     map_changed.notify_all();
-    if (const SessionPointer current = session_now()) current->pipeline().interrupt();
+    end_waiting();
     frame_thread.join();
     map_thread.join();
   }
@@ -107,6 +107,22 @@ struct Bridge::State {
   void end_session();
   void tell_addresses();
   void begin_with(const std::string& file, bool localises);
+  /// Any other thread: lets the thread of the frames call begin_with(), also where a session waits for somebody.
+  void request_begin_with(const std::string& file, bool localises) {
+    end_waiting();
+    try {
+      frames.request([&] { begin_with(file, localises); });
+    } catch (...) {
+      --ends_wanted;
+      throw;
+    }
+    --ends_wanted;
+  }
+  /// The observers of this session, and of one that begins meanwhile, do not wait for somebody, such as a browser.
+  void end_waiting() {
+    ++ends_wanted;
+    if (const SessionPointer current = session_now()) current->pipeline().interrupt();
+  }
   std::vector<ImuSample> take_inertia(const ImageSet& frame);
   void record(const FrameOutput& output);
 
@@ -156,6 +172,7 @@ struct Bridge::State {
   bool localise_only = false;
   bool cannot_begin = false;
   std::future<void> session_end;  // of `session`
+  std::atomic<int> ends_wanted = 0;
   std::atomic<bool> is_paused = false;
 
   std::mutex map_mutex;
@@ -294,9 +311,12 @@ SessionPointer Bridge::State::begin_session() {
     failure.clear();
   }
   tell_addresses();
-  const std::lock_guard lock(session_mutex);
-  session = begun;
-  session_end = std::move(end_of_begun);
+  {
+    const std::lock_guard lock(session_mutex);
+    session = begun;
+    session_end = std::move(end_of_begun);
+  }
+  if (ends_wanted > 0) begun->pipeline().interrupt();
   return begun;
 }
 
@@ -451,9 +471,7 @@ void Bridge::set_camera_pose(const Eigen::Isometry3d& T_base_camera) {
 void Bridge::pause(bool is_paused) { state_->is_paused = is_paused; }
 bool Bridge::is_paused() const { return state_->is_paused; }
 
-void Bridge::reset() {
-  state_->frames.request([this] { state_->begin_with({}, false); });
-}
+void Bridge::reset() { state_->request_begin_with({}, false); }
 
 void Bridge::save_map(const std::string& file) {
   if (file.empty()) throw Error("no file to save the map in; give its name");
@@ -465,7 +483,7 @@ void Bridge::save_map(const std::string& file) {
 void Bridge::load_map(const std::string& file, bool localise_only) {
   if (file.empty()) throw Error("no file to load a map from; give its name");
   read_map(file);  // throws for one that cannot be used, and the run goes on
-  state_->frames.request([&] { state_->begin_with(file, localise_only); });
+  state_->request_begin_with(file, localise_only);
 }
 
 void Bridge::finish() {

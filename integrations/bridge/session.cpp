@@ -49,18 +49,6 @@ std::vector<Obstacle> obstacles_of(const FrameResult& result, const Eigen::Isome
   return obstacles;
 }
 
-/// Nobody would end such waiting when a node is stopped.
-void require_no_waiting(const Configuration& configuration) {
-  for (const ModuleChoice& observer : configuration.observers) {
-    const auto wait = observer.values.find("wait");
-    const bool* waits = wait == observer.values.end() ? nullptr : std::get_if<bool>(&wait->second);
-    if (waits != nullptr && *waits)
-      throw ConfigurationError(observer.location, "the observer '" + observer.name +
-                                                      "' has wait: true, which a node cannot: its images would be "
-                                                      "dropped; remove `wait`, and connect at any time");
-  }
-}
-
 }  // namespace
 
 Configuration read_bridge_configuration(const Parameters& parameters, Registry& registry) {
@@ -74,7 +62,6 @@ Configuration read_bridge_configuration(const Parameters& parameters, Registry& 
   set(std::string("run.mode=") + (parameters.is_sequential ? "sequential" : "threaded"));
   set(std::string("run.pace=") + (parameters.is_sequential ? "none" : "timestamps"));
   Configuration configuration = resolve_configuration(root, parameters.configuration, resolving, pipeline_sections());
-  require_no_waiting(configuration);
   load_plugins(configuration, registry);
   return configuration;
 }

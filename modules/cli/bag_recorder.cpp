@@ -12,7 +12,6 @@
 #include "holdfast/core/counted.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/trajectory.hpp"
-#include "holdfast/mcap/sensor_messages.hpp"
 #include "output_file.hpp"
 #include "recorded_configuration.hpp"
 
@@ -25,6 +24,11 @@ constexpr const char* colour_topic = "/camera/color/image_raw";
 constexpr const char* depth_topic = "/camera/aligned_depth_to_color/image_raw";
 constexpr const char* camera_info_topic = "/camera/color/camera_info";
 constexpr const char* imu_topic = "/camera/imu";
+// As stereo_image_proc names rectified pairs.
+constexpr const char* left_topic = "/stereo/left/image_rect_color";
+constexpr const char* right_topic = "/stereo/right/image_rect_color";
+constexpr const char* left_info_topic = "/stereo/left/camera_info";
+constexpr const char* right_info_topic = "/stereo/right/camera_info";
 constexpr const char* camera_frame = "camera_color_optical_frame";
 constexpr const char* imu_frame = "camera_imu_optical_frame";
 
@@ -51,21 +55,16 @@ void require_no_inputs(std::initializer_list<std::filesystem::path> files, const
   }
 }
 
-const SourceDescription& without_right(const Configuration& configuration, const SourceDescription& source) {
-  if (source.has_depth || !source.has_right) return source;
-  throw ConfigurationError(
-      configuration.source.location,
-      "the source '" + configuration.source.name +
-          "' has stereo pairs, which the source 'rosbag' does not read; choose a source with depth "
-          "or one camera");
-}
+/// Whether the frames are stereo pairs; where they have depth as well, the pipeline uses that.
+bool is_stereo(const SourceDescription& source) { return source.has_right && !source.has_depth; }
+
+const char* encoding_of(const cv::Mat& image) { return image.channels() == 1 ? "mono8" : "bgr8"; }
 
 }  // namespace
 
 BagRecorder::BagRecorder(const Configuration& configuration, const Registry& registry, const SourceDescription& source,
                          std::filesystem::path file, bool overwrite)
-    : file_(std::move(file)),
-      configuration_(recorded_configuration(configuration, registry, without_right(configuration, source), "rosbag")) {
+    : file_(std::move(file)), configuration_(recorded_configuration(configuration, registry, source, "rosbag")) {
   require_no_inputs({file_, configuration_file(), truth_file()}, configuration);
   require_new_files({file_, configuration_file(), truth_file()}, overwrite);
   std::error_code ignored;
@@ -74,11 +73,27 @@ BagRecorder::BagRecorder(const Configuration& configuration, const Registry& reg
   // A bag does not tell that all rows are exposed at once.
   if (source.has_global_shutter) configuration_.sections["tracking"]["rolling_shutter"] = std::string("off");
   bag_.emplace(file_, "ros2", mcap::Compression::zstd);
-  colour_ = bag_->add_channel(mcap::sensor_channel(colour_topic, "Image"));
-  if (source.has_depth) depth_ = bag_->add_channel(mcap::sensor_channel(depth_topic, "Image"));
-  if (configuration_.camera) camera_info_ = bag_->add_channel(mcap::sensor_channel(camera_info_topic, "CameraInfo"));
-  if (source.has_imu) imu_ = bag_->add_channel(mcap::sensor_channel(imu_topic, "Imu"));
+  add_channels(source);
   writer_.emplace("recorder", waiting_frames, [this](const SensorFrame& frame) { write(frame); });
+}
+
+void BagRecorder::add_channels(const SourceDescription& source) {
+  const auto channel = [&](const char* topic, const char* type) {
+    return bag_->add_channel(mcap::sensor_channel(topic, type));
+  };
+  std::optional<Camera>& camera = configuration_.camera;
+  const bool has_right = is_stereo(source);
+  colour_ = channel(has_right ? left_topic : colour_topic, "Image");
+  if (source.has_depth) depth_ = channel(depth_topic, "Image");
+  if (camera) camera_info_ = channel(has_right ? left_info_topic : camera_info_topic, "CameraInfo");
+  if (source.has_imu) imu_ = channel(imu_topic, "Imu");
+  if (!has_right) return;
+  right_ = channel(right_topic, "Image");
+  configuration_.source.values["colour"] = std::string(left_topic);
+  configuration_.source.values["right"] = std::string(right_topic);
+  if (!camera) return;
+  right_info_ = channel(right_info_topic, "CameraInfo");
+  if (source.camera) camera->baseline = source.camera->baseline;  // of the real pair
 }
 
 std::filesystem::path BagRecorder::configuration_file() const {
@@ -90,9 +105,10 @@ std::filesystem::path BagRecorder::truth_file() const {
 }
 
 void BagRecorder::record(const SensorFrame& frame) {
-  if (frame.colour.empty() || (depth_ != 0 && frame.depth.empty()))
-    throw InputError({"frame " + std::to_string(frame.index)},
-                     "has no colour or no depth image, and cannot be recorded; check the source");
+  if (frame.colour.empty() || (depth_ != 0 && frame.depth.empty()) || (right_ != 0 && frame.right.empty()))
+    throw InputError({"frame " + std::to_string(frame.index)}, std::string("has no colour or no ") +
+                                                                   (right_ != 0 ? "right" : "depth") +
+                                                                   " image, and cannot be recorded; check the source");
   writer_->rethrow();
   if (!has_begun_) begin(frame);
   writer_->queue().push(frame);
@@ -112,10 +128,20 @@ void BagRecorder::write(const SensorFrame& frame) {
   if (imu_ != 0) write_imu(frame);
   if (camera_info_ != 0)
     bag_->write(camera_info_, header.stamp, mcap::camera_info_message(header, *configuration_.camera));
-  const char* encoding = frame.colour.channels() == 1 ? "mono8" : "bgr8";
-  bag_->write(colour_, header.stamp, mcap::image_message(header, encoding, frame.colour));
+  bag_->write(colour_, header.stamp, mcap::image_message(header, encoding_of(frame.colour), frame.colour));
+  if (right_ != 0) write_right(header, frame.right);
+  if (depth_ != 0) write_depth(frame);
   ++frames_;
-  if (depth_ == 0) return;
+}
+
+/// sensor_msgs/CameraInfo: both cameras of a rectified pair have the frame of the left one.
+void BagRecorder::write_right(const mcap::MessageHeader& header, const cv::Mat& image) {
+  if (right_info_ != 0)
+    bag_->write(right_info_, header.stamp, mcap::right_camera_info_message(header, *configuration_.camera));
+  bag_->write(right_, header.stamp, mcap::image_message(header, encoding_of(image), image));
+}
+
+void BagRecorder::write_depth(const SensorFrame& frame) {
   const mcap::MessageHeader at_depth{mcap::message_stamp(frame.timestamp + frame.depth_delay + shift_), camera_frame};
   const bool is_whole = exact_depth_factor(frame.depth, {millimetres}) == millimetres;
   bag_->write(depth_, at_depth.stamp,

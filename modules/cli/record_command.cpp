@@ -113,7 +113,7 @@ void add_record_command(CLI::App& app, int& exit_code, const ProgramHost& host) 
       "or with --bag an MCAP file of ROS 2 with images, camera_info and inertial measurements, without loss, and "
       "beside "
       "it\n"
-      "FILE.yaml, the configuration, on the recording, and FILE.truth.txt. A source with one camera has no depth.\n"
+      "FILE.yaml, the configuration, on the recording, and FILE.truth.txt. A bag also holds one camera or a pair.\n"
       "`holdfast run --record DIR` records while it tracks. Exits 0 when the source came to its end, 130 on Ctrl-C, "
       "143\n"
       "on SIGTERM (what was recorded is whole), 2 when the configuration is wrong, 1 for anything else.\n\n"

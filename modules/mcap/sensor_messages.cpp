@@ -90,6 +90,24 @@ const char* distortion_model(const Distortion& distortion) {
   return distortion.is_rational() ? "rational_polynomial" : "plumb_bob";
 }
 
+/// `x`: the fourth number of P, -fx times the distance from the left camera.
+std::string camera_info_of(const MessageHeader& header, const Camera& camera, double x) {
+  std::vector<double> coefficients = camera.distortion.coefficients();
+  if (camera.distortion.is_zero()) coefficients.assign(5, 0.0);
+  CdrWriter message(header);
+  message.number(static_cast<std::uint32_t>(camera.height));
+  message.number(static_cast<std::uint32_t>(camera.width));
+  message.text(distortion_model(camera.distortion));
+  message.number(static_cast<std::uint32_t>(coefficients.size()));
+  for (const double coefficient : coefficients) message.number(coefficient);
+  message.numbers({camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1});
+  message.numbers({1, 0, 0, 0, 1, 0, 0, 0, 1});
+  message.numbers({camera.fx, 0, camera.cx, x, 0, camera.fy, camera.cy, 0, 0, 0, 1, 0});
+  for (int i = 0; i < 6; ++i) message.number(std::uint32_t{0});  // no binning, and the whole image
+  message.number(std::uint8_t{0});
+  return message.finish();
+}
+
 }  // namespace
 
 std::uint64_t message_stamp(double seconds) {
@@ -139,20 +157,11 @@ std::string compressed_image_message(const MessageHeader& header, const std::str
 }
 
 std::string camera_info_message(const MessageHeader& header, const Camera& camera) {
-  std::vector<double> coefficients = camera.distortion.coefficients();
-  if (camera.distortion.is_zero()) coefficients.assign(5, 0.0);
-  CdrWriter message(header);
-  message.number(static_cast<std::uint32_t>(camera.height));
-  message.number(static_cast<std::uint32_t>(camera.width));
-  message.text(distortion_model(camera.distortion));
-  message.number(static_cast<std::uint32_t>(coefficients.size()));
-  for (const double coefficient : coefficients) message.number(coefficient);
-  message.numbers({camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1});
-  message.numbers({1, 0, 0, 0, 1, 0, 0, 0, 1});
-  message.numbers({camera.fx, 0, camera.cx, 0, 0, camera.fy, camera.cy, 0, 0, 0, 1, 0});
-  for (int i = 0; i < 6; ++i) message.number(std::uint32_t{0});  // no binning, and the whole image
-  message.number(std::uint8_t{0});
-  return message.finish();
+  return camera_info_of(header, camera, 0.0);
+}
+
+std::string right_camera_info_message(const MessageHeader& header, const Camera& camera) {
+  return camera_info_of(header, camera, -camera.fx * camera.baseline);
 }
 
 std::string imu_message(const MessageHeader& header, const ImuSample& sample) {

@@ -318,7 +318,10 @@ PipelineHealth Pipeline::health(double patience) const {
   return state_->health.health(state_->since_start.seconds(), patience);
 }
 
-void Pipeline::interrupt() { state_->flow.request_stop(); }
+void Pipeline::interrupt() {
+  state_->flow.request_stop();
+  for (const auto& observer : state_->parts.observers) observer->interrupt();
+}
 
 std::vector<StageTimes> Pipeline::take_background_times() {
   std::vector<StageTimes> times = state_->flow.take_background_times();

@@ -3,6 +3,7 @@
 
 #include <exception>
 #include <optional>
+#include <stop_token>
 #include <utility>
 
 #include "holdfast/run/frame_feeder.hpp"
@@ -18,7 +19,7 @@ class FrameLoop {
   FrameLoop(Pipeline& pipeline, const RunOptions& options, RunRecord& record)
       : pipeline_(pipeline), options_(options), record_(record) {}
 
-  bool stopped() const { return options_.stop && options_.stop(); }
+  bool stopped() const { return options_.stop_token.stop_requested() || (options_.stop && options_.stop()); }
   /// Feeds the frame that `read` gives. False at the end of the source.
   template <class Read>
   bool feed_next(const Read& read) {
@@ -89,9 +90,14 @@ void start_reader(FrameSource& source, const RunRecord& record, std::optional<Fr
 void feed_all(BuiltPipeline& built, const RunOptions& options, FrameLoop& loop, RunRecord& record) {
   std::optional<FrameFeeder> feeder;
   start_reader(*built.source, record, feeder);
+  const std::stop_callback interrupting(options.stop_token, [&built] {
+    built.source->interrupt();
+    built.pipeline.interrupt();
+  });
   try {
-    while (!loop.stopped() &&
-           loop.feed_next([&] { return feeder ? feeder->next(options.stop) : read_now(*built.source); })) {
+    while (!loop.stopped() && loop.feed_next([&] {
+      return feeder ? feeder->next([&loop] { return loop.stopped(); }) : read_now(*built.source);
+    })) {
     }
   } catch (const std::exception& error) {  // the results until here are kept
     record.failure = error.what();

@@ -290,6 +290,7 @@ void Viewer::set_run(ViewedRun run) {
 
 void Viewer::take_turn(double timestamp) { state_->control.take_turn(timestamp); }
 void Viewer::wait_for_browser() { state_->control.wait_for_watcher(); }
+void Viewer::stop_waiting() { state_->control.close(); }
 
 std::vector<std::shared_ptr<Viewer>> running_viewers() {
   const std::lock_guard lock(viewers_mutex);

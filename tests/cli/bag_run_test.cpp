@@ -101,6 +101,34 @@ TEST(BagRunTest, ARunOnARecordedBagIsTheRunOnItsSource) {
               testing::HasSubstr("expected a name that ends with .mcap"));
 }
 
+TEST(BagRunTest, ARunOnARecordedPairIsTheRunOnItsSource) {
+  const test::Program program;
+  const auto run = [&](const std::vector<std::string>& words) {
+    const test::Outcome outcome = program.run(words);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  };
+  const std::string modules = "features: orb\noptimizer: schur\n";
+  for (const std::string imu : {"imu: { name: bmi055 }\n", ""}) {
+    program.write("pair.yaml",
+                  "source: { simulated: { duration: 0.3, stereo_baseline: 0.12 } }\n"
+                  "camera: { width: 320, height: 240, fx: 260, fy: 260, cx: 160, cy: 120 }\n" +
+                      modules + imu);
+    run({"record", "pair.yaml", "--bag", "recording.mcap", "--quiet", "--overwrite"});
+    run({"run", "pair.yaml", "--output", "out_pair", "--quiet", "--overwrite"});
+    run({"run", "recording.yaml", "--output", "out_bag", "--quiet", "--overwrite"});
+    EXPECT_FALSE(program.text("out_bag/trajectory.txt").empty());
+    EXPECT_EQ(program.text("out_bag/trajectory.txt"), program.text("out_pair/trajectory.txt"));
+    EXPECT_EQ(program.text("out_bag/map.hfm"), program.text("out_pair/map.hfm"));
+  }
+  // The bag alone: the baseline is in its camera_info.
+  program.write("bag.yaml",
+                "source: { rosbag: { path: recording.mcap, right: /stereo/right/image_rect_color } }\n"
+                "camera: auto\ntracking: { rolling_shutter: off }\n" +
+                    modules);
+  run({"run", "bag.yaml", "--output", "out_alone", "--quiet"});
+  EXPECT_EQ(program.text("out_alone/trajectory.txt"), program.text("out_pair/trajectory.txt"));
+}
+
 constexpr const char* office =
     "source: { simulated: { duration: 0.2 } }\ncamera: { width: 160, height: 120, fx: 130, fy: 130, cx: 80, cy: 60 }\n"
     "features: orb\noptimizer: schur\n";

@@ -71,6 +71,15 @@ TEST_F(SensorMessagesTest, TheSourceReadsEveryCamera) {
   }
 }
 
+TEST_F(SensorMessagesTest, TheSourceReadsTheBaselineOfAPair) {
+  Camera camera = camera_with({});
+  camera.baseline = 0.12;
+  const Camera found =
+      read("CameraInfo", right_camera_info_message(header, camera), rosbag_plugin::read_right_camera_info);
+  EXPECT_NEAR(found.baseline, 0.12, 1e-15);
+  EXPECT_EQ(found.fx, camera.fx);
+}
+
 TEST_F(SensorMessagesTest, TheSourceReadsInertialMeasurements) {
   ImuSample sample;
   sample.angular_velocity = {0.1, -0.2, 0.3};

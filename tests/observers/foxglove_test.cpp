@@ -94,6 +94,14 @@ TEST(FoxgloveTest, TheClientOfFoxgloveGetsARun) {
   }
 }
 
+TEST(FoxgloveTest, AnInterruptEndsTheWait) {
+  const auto live = observer({{"wait", true}});
+  auto frame = std::async(std::launch::async, [&] { feed(*live, 0); });
+  EXPECT_EQ(frame.wait_for(std::chrono::milliseconds(50)), std::future_status::timeout);
+  live->interrupt();
+  frame.get();
+}
+
 /// All texts in a document.
 void collect_texts(const Json& value, std::vector<std::string>& texts) {
   if (value.is_string()) texts.push_back(value);

@@ -71,6 +71,19 @@ def test_snapshot_and_interrupt_are_allowed(frames, mode):
     assert len(observer.answers) == 3 and observer.answers[-1] > 100
 
 
+@pytest.mark.parametrize("observer", ["foxglove", "viewer"])
+def test_interrupt_ends_a_wait_for_somebody(config, frames, observer):
+    config["observers"] = [{observer: {"wait": True}}]
+    try:
+        watched = holdfast.Pipeline(config)
+    except holdfast.PluginError as error:
+        pytest.skip(str(error))
+    with watched as pipeline:
+        threading.Timer(0.5, pipeline.interrupt).start()
+        pipeline.feed(frames[0])  # returns
+        pipeline.feed(frames[1])
+
+
 def test_filter_is_called_under_the_lock_of_the_map(frames):
     class Asking(holdfast.DynamicFilter):
         def apply(self, context, evidence):

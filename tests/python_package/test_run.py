@@ -132,6 +132,17 @@ def test_interrupt_ends_the_run_cleanly(config, tmp_path):
     assert '"interrupted": true' in (tmp_path / "out" / "run.json").read_text()
 
 
+def test_interrupt_ends_a_wait_for_a_client(config, tmp_path):
+    config["observers"] = [{"foxglove": {"wait": True}}]
+    try:
+        holdfast.Pipeline(config).close()
+    except holdfast.PluginError as error:
+        pytest.skip(str(error))
+    threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        holdfast.run(config, output=tmp_path / "out", progress=False)
+
+
 def test_other_threads_go_on_during_a_run(config):
     counts = []
     running = threading.Event()

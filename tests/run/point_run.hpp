@@ -57,16 +57,20 @@ class PointSource final : public FrameSource {
 struct PointRun {
   explicit PointRun(std::uint64_t bad = PointSource::frame_count) {
     auto source = std::make_unique<PointSource>(world, bad);
-    Registry registry;
-    holdfast_register_plugin_ceres(registry);
-    PipelineBuilder builder(std::move(registry));
-    builder.source(source->describe())
-        .features(std::make_unique<PointExtractor>(world, 0.3))
-        .optimizer(CeresSettings{});
-    built = std::make_unique<BuiltPipeline>(BuiltPipeline{std::move(source), builder.build()});
+    built = std::make_unique<BuiltPipeline>(BuiltPipeline{std::move(source), builder().build()});
     configuration.file = "points.yaml";
     configuration.run.seed = 7;
     configuration.loop_detector.name = "none";
+  }
+
+  PipelineBuilder builder() {
+    Registry registry;
+    holdfast_register_plugin_ceres(registry);
+    PipelineBuilder begun(std::move(registry));
+    begun.source(PointSource(world).describe())
+        .features(std::make_unique<PointExtractor>(world, 0.3))
+        .optimizer(CeresSettings{});
+    return begun;
   }
 
   PointWorld world{find_camera("tum_fr1").value()};

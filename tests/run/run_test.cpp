@@ -3,6 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <future>
+#include <stop_token>
+#include <thread>
+#include <utility>
+
 #include "holdfast/run/results.hpp"
 #include "run/point_run.hpp"
 
@@ -95,6 +101,47 @@ TEST(Run, StopIsAskedWhileAPacedRunWaitsForAFrame) {
   EXPECT_EQ(record.summary.frames(), 1U);
 }
 
+/// Waits in its first frame until the run is interrupted.
+class Waiting final : public Observer {
+ public:
+  explicit Waiting(std::promise<void>& waits) : waits_(waits) {}
+  void on_frame(const SensorFrame&, const Frame&, const FrameResult&) override {
+    if (!std::exchange(has_waited_, true)) waits_.set_value();
+    interrupted_.get_future().wait();
+  }
+  void interrupt() override {
+    if (!was_interrupted_.exchange(true)) interrupted_.set_value();
+  }
+
+ private:
+  std::promise<void>& waits_;
+  std::promise<void> interrupted_;
+  std::atomic<bool> was_interrupted_ = false;
+  bool has_waited_ = false;
+};
+
+TEST(Run, AStopTokenEndsARunWhoseObserverWaits) {
+  for (const RunMode mode : {RunMode::sequential, RunMode::threaded}) {
+    test::PointRun points;
+    points.configuration.run.mode = mode;
+    auto source = std::make_unique<test::PointSource>(points.world);
+    std::promise<void> waits;
+    points.built = std::make_unique<BuiltPipeline>(
+        BuiltPipeline{std::move(source), points.builder().observer(std::make_unique<Waiting>(waits)).build()});
+    std::stop_source stop;
+    RunOptions options;
+    options.stop_token = stop.get_token();
+    std::jthread stopping([&] {
+      waits.get_future().wait();
+      stop.request_stop();
+    });
+    const RunRecord record = run(*points.built, points.configuration, options);
+    EXPECT_TRUE(record.was_interrupted);
+    EXPECT_EQ(record.failure, "");
+    EXPECT_EQ(record.summary.frames(), 1U);
+  }
+}
+
 TEST(Run, AFailureKeepsTheResultsBeforeIt) {
   test::PointRun points(9);
   const RunRecord record = run(*points.built, points.configuration);
@@ -122,14 +169,8 @@ std::vector<std::string> texts_of(const Warnings& warnings) {
 TEST(Run, WarningsOfConfigurationSourceAndModulesAreInEveryResult) {
   test::PointRun points;
   auto source = std::make_unique<test::PointSource>(points.world);
-  Registry registry;
-  holdfast_register_plugin_ceres(registry);
-  PipelineBuilder builder(std::move(registry));
-  builder.source(source->describe())
-      .features(std::make_unique<test::PointExtractor>(points.world, 0.3))
-      .optimizer(CeresSettings{})
-      .observer(std::make_unique<Doubtful>())
-      .observer(std::make_unique<Doubtful>());
+  PipelineBuilder builder = points.builder();
+  builder.observer(std::make_unique<Doubtful>()).observer(std::make_unique<Doubtful>());
   points.built = std::make_unique<BuiltPipeline>(BuiltPipeline{std::move(source), builder.build()});
   points.configuration.warnings = {{{"points.yaml", 2, 1}, "is of another folder"}};
   const std::vector<std::string> before = {"points.yaml:2:1: is of another folder", "points.txt:3: holds few points",

@@ -216,6 +216,56 @@ TEST_F(RosbagTest, ReadsTheCameraOfCameraInfo) {
               HasSubstr("15 distortion coefficients"));
 }
 
+constexpr const char* left_image = "/stereo/left/image_rect";
+constexpr const char* right_image = "/stereo/right/image_rect";
+constexpr const char* left_info = "/stereo/left/camera_info";
+
+/// Pairs whose right image comes so much later [ns]; `x` is the fourth number of P of the right camera.
+std::string stereo_bag(double x, std::uint64_t later = 0, double right_fx = 50.0) {
+  BagWriter bag;
+  const auto info = [](double fx, double fourth) {
+    return camera_info_message(colour_stamp(0), 64, 48, "plumb_bob", {0.1, -0.2, 0.003, 0.004, 0.5},
+                               {52, 0, 32, 0, 53, 24, 0, 0, 1}, {fx, 0, 31, fourth, 0, 51, 23, 0, 0, 0, 1, 0});
+  };
+  for (int i = 0; i < 3; ++i) {
+    bag.add(left_info, camera_info, received(i), info(50.0, 0.0));
+    bag.add("/stereo/right/camera_info", camera_info, received(i), info(right_fx, x));
+    bag.add(left_image, image, received(i), colour_message(i));
+    bag.add(right_image, image, received(i) + 1000,
+            image_message(colour_stamp(i) + later, "bgr8", colour_pixels(i + 10)));
+  }
+  return bag.finish();
+}
+
+TEST_F(RosbagTest, ReadsStereoPairs) {
+  const ParameterValues right = {{"right", std::string(right_image)}, {"camera_info", std::string(left_info)}};
+  const auto source = open(stereo_bag(-6.0, 900'000), right);
+  EXPECT_TRUE(source->describe().has_right);
+  EXPECT_FALSE(source->describe().has_depth);
+  ASSERT_TRUE(source->describe().camera);
+  EXPECT_DOUBLE_EQ(source->describe().camera->baseline, 0.12);
+  EXPECT_EQ(source->describe().camera->fx, 50.0);
+  EXPECT_TRUE(source->describe().camera->distortion.is_zero());
+  const std::vector<SensorFrame> frames = read_all(*source);
+  ASSERT_EQ(frames.size(), 3U);
+  for (int i = 0; i < 3; ++i) {
+    const SensorFrame& frame = frames[static_cast<std::size_t>(i)];
+    EXPECT_EQ(cv::norm(frame.colour, colour_pixels(i), cv::NORM_INF), 0.0);
+    EXPECT_EQ(cv::norm(frame.right, colour_pixels(i + 10), cv::NORM_INF), 0.0);
+    EXPECT_TRUE(frame.depth.empty());
+  }
+  EXPECT_THAT(error(stereo_bag(-6.0, 1'100'000), right), HasSubstr("no left and right image lie within 0.001000 s"));
+  EXPECT_THAT(error(stereo_bag(6.0), right), HasSubstr("has no baseline: the fourth number of P is 6.0"));
+  EXPECT_THAT(error(stereo_bag(-6.0, 0, 51.0), right), HasSubstr("are not of a rectified pair"));
+  ParameterValues values = right;
+  values["depth"] = std::string(depth_topic);
+  EXPECT_THAT(error(stereo_bag(-6.0), values), HasSubstr("with depth and with a right camera"));
+  values = {{"right", std::string(right_image)}, {"colour", std::string(right_image)}};
+  EXPECT_THAT(error(stereo_bag(-6.0), values), HasSubstr("the same images on the left and on the right"));
+  EXPECT_FALSE(open(stereo_bag(0.0), {{"right", std::string(right_image)}})->describe().camera)
+      << "the configuration has one, with the baseline";
+}
+
 TEST_F(RosbagTest, SaysWhatThereIsToChooseFrom) {
   BagWriter bag;
   bag.add("/left/image_raw", image, received(0), colour_message(0));

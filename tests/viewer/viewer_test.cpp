@@ -284,6 +284,23 @@ TEST_F(ViewerTest, WaitsForTheFirstBrowser) {
   run.get();
 }
 
+TEST_F(ViewerTest, AnInterruptEndsThePauseAndTheWaitForABrowser) {
+  std::future<void> run = std::async(std::launch::async, [this] { viewer_->wait_for_browser(); });
+  EXPECT_EQ(run.wait_for(std::chrono::milliseconds(50)), std::future_status::timeout);
+  {
+    SocketClient client(address_);
+    run.get();
+    client.receive();
+    pause(client);
+    std::future<void> frame = pass_frame(0.0);
+    EXPECT_FALSE(is_done(frame));
+    viewer_->stop_waiting();
+    frame.get();
+    viewer_->take_turn(0.1);  // still paused
+  }
+  viewer_->wait_for_browser();
+}
+
 TEST_F(ViewerTest, AcceptsOnlyTheDocumentedMessages) {
   const std::set<std::string> documented = {"pause",     "resume",  "step",    "speed 0", "speed 0.25",
                                             "speed 0.5", "speed 1", "speed 2", "speed 4", "rate 0",

@@ -81,6 +81,9 @@ class Observer : public Module {
   virtual void on_loop(KeyFrameId, KeyFrameId, const ObservedMap&) {}
   /// Once at the end of the run, when all threads have ended, by the thread that calls finish().
   virtual void on_finish(const Map&) {}
+  /// When the run is interrupted (Pipeline::interrupt()), by any thread, also during another call, and more than once:
+  /// an observer that waits for somebody, such as a browser, goes on and does not wait again.
+  virtual void interrupt() {}
 };
 
 }  // namespace holdfast

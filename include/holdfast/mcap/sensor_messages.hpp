@@ -33,6 +33,8 @@ std::string image_message(const MessageHeader& header, const std::string& encodi
 std::string compressed_image_message(const MessageHeader& header, const std::string& format, const std::string& bytes);
 /// CameraInfo of raw images: plumb_bob, rational_polynomial or equidistant, as the lens has it. P is K, for one camera.
 std::string camera_info_message(const MessageHeader& header, const Camera& camera);
+/// CameraInfo of the right camera of a rectified pair: that of the left one, with the baseline in P.
+std::string right_camera_info_message(const MessageHeader& header, const Camera& camera);
 /// Imu without an orientation; covariances are unknown. The stamp is that of `header`.
 std::string imu_message(const MessageHeader& header, const ImuSample& sample);
 

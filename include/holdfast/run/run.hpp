@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -35,8 +36,11 @@ struct RunOptions {
   /// Called once, after all modules have been made and before the first frame is read.
   std::function<void(const RunRecord& record)> on_start;
   std::function<void(const RunProgress& progress)> on_frame;
-  /// Returns true to end the run early. Called before each frame, and ten times a second while waiting for one.
+  /// Returns true to end the run early. Called before each frame, and ten times a second while waiting for one, but not
+  /// while an observer waits for somebody in between.
   std::function<bool()> stop;
+  /// Ends the run early, too; its source can be asked by any thread, also while an observer waits.
+  std::stop_token stop_token = {};
   /// Start of the time measurement of RunRecord::start_seconds and total_seconds. A program can pass a stopwatch that
   /// includes the loading of the configuration.
   Stopwatch since_start;

@@ -138,6 +138,8 @@ class Viewer {
   void take_turn(double timestamp);
   /// Waits for the first browser, or until the thread handles a signal.
   void wait_for_browser();
+  /// Ends both for good: calls in progress and later ones return at once.
+  void stop_waiting();
 
  private:
   struct State;

@@ -128,7 +128,8 @@ class Pipeline:
         self._core.close()
 
     def interrupt(self) -> None:
-        """Makes long adjustments in progress end after their current iteration. From any thread."""
+        """Makes long adjustments in progress end after their current iteration, and observers that wait for somebody
+        go on. From any thread."""
         self._core.interrupt()
 
     def trajectory(self) -> Trajectory:

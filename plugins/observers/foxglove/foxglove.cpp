@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <atomic>
 #include <ctime>
 #include <memory>
 #include <mutex>
@@ -104,19 +105,20 @@ class Foxglove final : public Observer {
   }
 
   void on_finish(const Map& map) override { messages_.add_map(make_snapshot(map), last_time()); }
+  void interrupt() override { is_interrupted_ = true; }
 
  private:
   double last_time() const {
     const std::lock_guard lock(mutex_);
     return messages_.time();
   }
-  /// Until there is a subscription, and for 0.2 s no further one: clients send one request for each topic. Or until
-  /// this thread handles a signal, which ends a sleep.
+  /// Until there is a subscription, and for 0.2 s no further one: clients send one request for each topic. Or until the
+  /// run is interrupted, or this thread handles a signal, which ends a sleep.
   void wait_for_subscriptions() const {
     const std::timespec nap{0, 20'000'000};
     constexpr int quiet_naps = 10;
     int known = 0;
-    for (int quiet = 0; quiet < quiet_naps; ++quiet) {
+    for (int quiet = 0; quiet < quiet_naps && !is_interrupted_; ++quiet) {
       if (nanosleep(&nap, nullptr) != 0) return;
       const int subscriptions = channels_.subscriptions();
       if (subscriptions == 0 || std::exchange(known, subscriptions) != subscriptions) quiet = 0;
@@ -129,6 +131,7 @@ class Foxglove final : public Observer {
   mcap::RunMessages messages_;
   double map_time_ = -1e300;  // of the last map [s]; used by the mapping thread
   bool has_waited_ = false;
+  std::atomic<bool> is_interrupted_ = false;
   LiveClients clients_;
   SocketServer server_;  // last: its thread uses everything above
 };

@@ -139,6 +139,39 @@ Distortion inverse_of(Camera camera, const std::string& place) {
   return camera.distortion;
 }
 
+/// The fields that are used.
+struct InfoFields {
+  std::uint32_t height = 0, width = 0;
+  std::string model;
+  std::uint32_t count = 0;  ///< of distortion coefficients
+  double d[14] = {}, k[9] = {}, p[12] = {};
+};
+
+InfoFields read_info_fields(const Message& message) {
+  const std::string& place = message.place;
+  const std::unique_ptr<MessageReader> owner = message.open();
+  MessageReader& reader = *owner;
+  InfoFields fields;
+  read_message_header(reader);
+  fields.height = reader.number<std::uint32_t>("height");
+  fields.width = reader.number<std::uint32_t>("width");
+  fields.model = reader.text("distortion model");
+  fields.count = reader.number<std::uint32_t>("number of coefficients");
+  if (fields.count > 14)
+    refuse(place,
+           "has " + std::to_string(fields.count) + " distortion coefficients; expected 14 at most; it is damaged");
+  for (std::uint32_t i = 0; i < fields.count; ++i) fields.d[i] = reader.number<double>("distortion");
+  for (double& number : fields.k) number = reader.number<double>("K");
+  for (int i = 0; i < 9; ++i) reader.number<double>("R");
+  for (double& number : fields.p) number = reader.number<double>("P");
+  const auto binning_x = reader.number<std::uint32_t>("binning");
+  const auto binning_y = reader.number<std::uint32_t>("binning");
+  if (binning_x > 1 || binning_y > 1)
+    refuse(place, "is of an image with " + std::to_string(binning_x) + "x" + std::to_string(binning_y) +
+                      " pixels put together; expected none; give the camera under `camera:` and `camera_info: none`");
+  return fields;
+}
+
 }  // namespace
 
 double read_stamp(const Message& message) {
@@ -220,26 +253,7 @@ cv::Mat ImageMessages::depth(const Message& message, const DepthEncoding& encodi
 
 Camera read_camera_info(const Message& message, bool is_rectified) {
   const std::string& place = message.place;
-  const std::unique_ptr<MessageReader> owner = message.open();
-  MessageReader& reader = *owner;
-  read_message_header(reader);
-  const auto height = reader.number<std::uint32_t>("height");
-  const auto width = reader.number<std::uint32_t>("width");
-  const std::string model = reader.text("distortion model");
-  const auto count = reader.number<std::uint32_t>("number of coefficients");
-  if (count > 14)
-    refuse(place, "has " + std::to_string(count) + " distortion coefficients; expected 14 at most; it is damaged");
-  double d[14] = {}, k[9], p[12];
-  for (std::uint32_t i = 0; i < count; ++i) d[i] = reader.number<double>("distortion");
-  for (double& number : k) number = reader.number<double>("K");
-  for (int i = 0; i < 9; ++i) reader.number<double>("R");
-  for (double& number : p) number = reader.number<double>("P");
-  const auto binning_x = reader.number<std::uint32_t>("binning");
-  const auto binning_y = reader.number<std::uint32_t>("binning");
-  if (binning_x > 1 || binning_y > 1)
-    refuse(place, "is of an image with " + std::to_string(binning_x) + "x" + std::to_string(binning_y) +
-                      " pixels put together; expected none; give the camera under `camera:` and `camera_info: none`");
-
+  const auto [height, width, model, count, d, k, p] = read_info_fields(message);
   Camera camera;
   camera.name = "camera_info";
   if (width < 1 || height < 1 || width > largest_side || height > largest_side)
@@ -285,6 +299,18 @@ Camera read_camera_info(const Message& message, bool is_rectified) {
   if (is_inverse && !is_without) camera.distortion = inverse_of(camera, place);
   if (const std::string trouble = camera.trouble(); !trouble.empty())
     refuse(place, trouble + "; give the camera under `camera:` and `camera_info: none`");
+  return camera;
+}
+
+Camera read_right_camera_info(const Message& message) {
+  Camera camera = read_camera_info(message, true);
+  const InfoFields fields = read_info_fields(message);
+  camera.baseline = -fields.p[3] / fields.p[0];
+  if (!(camera.baseline > 0.0) || !std::isfinite(camera.baseline))
+    refuse(message.place,
+           "has no baseline: the fourth number of P is " + std::to_string(fields.p[3]) +
+               ", but is negative for the right camera of a rectified pair; exchange `source.rosbag.colour` and "
+               "`source.rosbag.right`, or give camera and baseline under `camera:` and `camera_info: none`");
   return camera;
 }
 

@@ -42,5 +42,8 @@ class ImageMessages {
 /// rectified image, by the projection matrix P and without distortion. Throws InputError for another model and for
 /// numbers that cannot be.
 Camera read_camera_info(const Message& message, bool is_rectified);
+/// The camera of the rectified pair whose right one this CameraInfo is of: that of its projection matrix, which has the
+/// baseline. Throws InputError as read_camera_info() does, and for one without a baseline.
+Camera read_right_camera_info(const Message& message);
 
 }  // namespace holdfast::rosbag_plugin

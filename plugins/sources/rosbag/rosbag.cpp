@@ -26,7 +26,7 @@ namespace {
 
 struct RosbagSettings : RecordedFrames {
   std::filesystem::path path;
-  std::string colour, depth, camera_info, imu;
+  std::string colour, depth, right, camera_info, imu;
   double max_time_difference = 0.02;
   double depth_factor = 1000.0;
   int invalid_depth = DepthEncoding::largest;
@@ -46,6 +46,9 @@ struct RosbagSettings : RecordedFrames {
     table.add("depth", &S::depth,
               "topic of the depth images, registered to the colour images; empty = found in the same way, if there is "
               "one; none = colour alone");
+    table.add("right", &S::right,
+              "topic of the right images of a rectified stereo pair, whose left ones are `colour`, instead of depth; "
+              "empty = none");
     table.add("camera_info", &S::camera_info,
               "topic of the calibration of the colour camera; empty = camera_info beside the colour images, if it is "
               "there and the configuration gives no camera; none = it is not read");
@@ -53,8 +56,10 @@ struct RosbagSettings : RecordedFrames {
               "topic of inertial measurements (sensor_msgs/Imu); empty = the only one, if the configuration has the "
               "section 'imu'; none = they are not read");
     table
-        .add("max_time_difference", &S::max_time_difference,
-             "upper bound of the time difference between a colour image and its depth image")
+        .add(
+            "max_time_difference", &S::max_time_difference,
+            "upper bound of the time difference between a colour image and its depth image; those of a stereo pair lie "
+            "within 1 ms")
         .range(1e-6, 1.0)
         .unit("s");
     table
@@ -96,35 +101,43 @@ std::vector<StampedMessage> stamped_messages(Bag& bag, const std::string& topic)
 
 struct BagFrame {
   StampedMessage colour;
-  std::optional<StampedMessage> depth;
+  std::optional<StampedMessage> second;  ///< depth or right image
 };
+
+constexpr double simultaneous = 1e-3;  // images of a stereo pair [s]
 
 std::vector<BagFrame> find_bag_frames(Bag& bag, const ChosenTopics& topics, const RosbagSettings& settings) {
   const std::vector<StampedMessage> colour = stamped_messages(bag, topics.colour.name);
+  const bool is_stereo = !topics.right.name.empty();
+  const std::string second_topic = is_stereo ? topics.right.name : topics.depth.name;
   std::vector<BagFrame> frames;
-  if (topics.depth.name.empty()) {
+  if (second_topic.empty()) {
     for (const StampedMessage& message : colour) frames.push_back({message, {}});
     select_range(frames, settings.start, settings.frames, settings.path, "colour images");
     return frames;
   }
-  const std::vector<StampedMessage> depth = stamped_messages(bag, topics.depth.name);
+  const std::vector<StampedMessage> second = stamped_messages(bag, second_topic);
+  const double difference = is_stereo ? simultaneous : settings.max_time_difference;
   const auto stamps = [](const std::vector<StampedMessage>& messages) {
     std::vector<double> list;
     for (const StampedMessage& message : messages) list.push_back(message.stamp);
     return list;
   };
-  for (const auto& [i, j] : associate_stamps(stamps(colour), stamps(depth), settings.max_time_difference))
-    frames.push_back({colour[i], depth[j]});
+  for (const auto& [i, j] : associate_stamps(stamps(colour), stamps(second), difference))
+    frames.push_back({colour[i], second[j]});
   const auto range = [](const std::string& topic, const std::vector<StampedMessage>& messages) {
     return topic + " runs from " + std::to_string(messages.front().stamp) + " to " +
            std::to_string(messages.back().stamp) + " s";
   };
   if (frames.empty())
     throw InputError({settings.path.string()},
-                     "no colour and depth image lie within " + std::to_string(settings.max_time_difference) +
-                         " s: " + range(topics.colour.name, colour) + ", " + range(topics.depth.name, depth) +
-                         "; set `source.rosbag.max_time_difference`");
-  select_range(frames, settings.start, settings.frames, settings.path, "colour and depth pairs");
+                     std::string("no ") + (is_stereo ? "left and right" : "colour and depth") + " image lie within " +
+                         std::to_string(difference) + " s: " + range(topics.colour.name, colour) + ", " +
+                         range(second_topic, second) +
+                         (is_stereo ? "; expected a camera that exposes both at once"
+                                    : "; set `source.rosbag.max_time_difference`"));
+  select_range(frames, settings.start, settings.frames, settings.path,
+               is_stereo ? "stereo pairs" : "colour and depth pairs");
   return frames;
 }
 
@@ -141,11 +154,12 @@ class RosbagSource final : public FrameSource {
   RosbagSource(const RosbagSettings& settings, const CreationContext& context)
       : settings_(settings),
         bag_(open_bag(settings.path)),
-        topics_(choose_topics(*bag_, {settings.colour, settings.depth, settings.camera_info})),
+        topics_(choose_topics(*bag_, {settings.colour, settings.depth, settings.camera_info, settings.right})),
         frames_(find_bag_frames(*bag_, topics_, settings)),
         size_(context.camera.width, context.camera.height) {
     description_.name = name_of(settings.path);
     description_.has_depth = !topics_.depth.name.empty();
+    description_.has_right = !topics_.right.name.empty();
     description_.can_read_ahead = true;
     description_.frame_count = frames_.size();
     for (const BagFrame& frame : frames_) description_.frame_timestamps.push_back(frame.colour.stamp);
@@ -199,7 +213,27 @@ class RosbagSource final : public FrameSource {
  private:
   Camera read_camera() {
     const BagMessage message = bag_->messages(topics_.camera_info.name).front();
-    return read_camera_info(bag_->content(message), is_rectified(topics_.colour.name));
+    Camera camera = read_camera_info(bag_->content(message), is_rectified(topics_.colour.name));
+    if (description_.has_right) camera.baseline = read_baseline(camera);
+    return camera;
+  }
+  /// Fails for a pair that is not rectified.
+  double read_baseline(const Camera& left) {
+    const std::string& name = topics_.right_camera_info.name;
+    if (name.empty())
+      throw InputError({settings_.path.string()},
+                       "has no camera_info beside '" + topics_.right.name +
+                           "', which tells the baseline; give camera and baseline under `camera:`");
+    Camera right = read_right_camera_info(bag_->content(bag_->messages(name).front()));
+    right.name = left.name;
+    const double baseline = std::exchange(right.baseline, left.baseline);
+    if (!(right == left))
+      throw InputError(
+          {settings_.path.string()},
+          "the images of '" + topics_.colour.name + "' and '" + topics_.right.name +
+              "' are not of a rectified pair: their camera_info differ in more than the baseline, or have a "
+              "distortion; record the topics image_rect of stereo_image_proc");
+    return baseline;
   }
   void register_depth(const Camera& colour) {
     const RealsenseDepth depth = read_realsense_depth(*bag_, topics_.colour.name, topics_.depth.name);
@@ -210,15 +244,25 @@ class RosbagSource final : public FrameSource {
     SensorFrame frame;
     frame.timestamp = source.colour.stamp;
     const Message colour = bag_->content(source.colour.message);
-    frame.colour = images_.colour(colour, [&](const cv::Size& size) {
+    frame.colour = decode_colour(colour);
+    if (!source.second) return frame;
+    const Message second = bag_->content(source.second->message);
+    if (description_.has_right)
+      frame.right = decode_colour(second);
+    else
+      add_depth(second, source.second->stamp - source.colour.stamp, frame);
+    return frame;
+  }
+  cv::Mat decode_colour(const Message& message) {
+    return images_.colour(message, [&](const cv::Size& size) {
       if (size != size_)
-        throw InputError({colour.place}, "is " + size_text(size.width, size.height) + " pixels, but the camera is " +
-                                             size_text(size_.width, size_.height) +
-                                             "; give the camera of this recording under `camera:`");
+        throw InputError({message.place}, "is " + size_text(size.width, size.height) + " pixels, but the camera is " +
+                                              size_text(size_.width, size_.height) +
+                                              "; give the camera of this recording under `camera:`");
     });
-    if (!source.depth) return frame;
-    frame.depth_delay = source.depth->stamp - source.colour.stamp;
-    const Message depth = bag_->content(source.depth->message);
+  }
+  void add_depth(const Message& depth, double delay, SensorFrame& frame) {
+    frame.depth_delay = delay;
     const cv::Size expected = registration_ ? registration_->depth_size() : size_;
     frame.depth = images_.depth(depth, {settings_.depth_factor, settings_.invalid_depth}, [&](const cv::Size& size) {
       if (size == expected) return;
@@ -234,7 +278,6 @@ class RosbagSource final : public FrameSource {
                                           "`source.rosbag.depth`");
     });
     if (registration_) frame.depth = registration_->apply(frame.depth);
-    return frame;
   }
 
   RosbagSettings settings_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "holdfast/core/error.hpp"
@@ -97,6 +98,29 @@ BagTopic found_topic(const Bag& bag, const std::vector<BagTopic>& candidates, st
                   parameter + '`');
 }
 
+/// The topics to choose from: colour, and depth.
+std::pair<std::vector<BagTopic>, std::vector<BagTopic>> image_topics(Bag& bag, const std::string& right) {
+  std::vector<BagTopic> colour, depth;
+  for (const BagTopic& topic : bag.topics()) {
+    if (!is_image(topic) || !topic.is_readable() || topic.messages == 0) continue;
+    if (!right.empty() && base_of(topic.name) == base_of(right)) continue;
+    const std::string encoding = encoding_of(bag.content(bag.messages(topic.name).front()));
+    (is_depth_encoding(encoding) ? depth : colour).push_back(topic);
+  }
+  return {colour, depth};
+}
+
+/// camera_info beside images; an empty name where there is none.
+BagTopic info_beside(const Bag& bag, const std::string& images) {
+  const std::string base = base_of(images);
+  const std::string beside = is_realsense_stream(base, "Color") ? realsense_camera_info(base)
+                                                                : base.substr(0, base.rfind('/') + 1) + "camera_info";
+  for (const BagTopic& topic : bag.topics())
+    if (topic.name == beside && topic.type == camera_info_type && topic.is_readable() && topic.messages > 0)
+      return topic;
+  return {};
+}
+
 }  // namespace
 
 bool is_rectified(const std::string& colour_topic) {
@@ -105,34 +129,32 @@ bool is_rectified(const std::string& colour_topic) {
 }
 
 ChosenTopics choose_topics(Bag& bag, const TopicNames& names) {
-  const std::vector<BagTopic> topics = bag.topics();
+  const bool has_right = !names.right.empty(), looks_for_depth = names.depth.empty() && !has_right;
   ChosenTopics chosen;
   if (!names.colour.empty()) chosen.colour = named_topic(bag, names.colour, "colour", true);
-  if (!names.depth.empty() && names.depth != "none") chosen.depth = named_topic(bag, names.depth, "depth", true);
-
-  if (names.colour.empty() || names.depth.empty()) {
-    std::vector<BagTopic> colour, depth;
-    for (const BagTopic& topic : topics) {
-      if (!is_image(topic) || !topic.is_readable() || topic.messages == 0) continue;
-      const std::string encoding = encoding_of(bag.content(bag.messages(topic.name).front()));
-      (is_depth_encoding(encoding) ? depth : colour).push_back(topic);
-    }
+  if (has_right) chosen.right = named_topic(bag, names.right, "right", true);
+  if (!names.depth.empty() && names.depth != "none") {
+    if (has_right)
+      refuse(bag,
+             "is to be read with depth and with a right camera; expected one of both: remove `source.rosbag.depth` or "
+             "`source.rosbag.right`");
+    chosen.depth = named_topic(bag, names.depth, "depth", true);
+  }
+  if (names.colour.empty() || looks_for_depth) {
+    const auto [colour, depth] = image_topics(bag, names.right);
     if (names.colour.empty()) chosen.colour = found_topic(bag, colour, usual_colour, "colour", "colour");
-    if (names.depth.empty()) chosen.depth = found_topic(bag, depth, usual_depth, "depth", "depth");
+    if (looks_for_depth) chosen.depth = found_topic(bag, depth, usual_depth, "depth", "depth");
   }
   if (chosen.colour.name.empty()) refuse(bag, "has no colour images");
+  if (chosen.colour.name == chosen.right.name)
+    refuse(bag,
+           "is to be read with the same images on the left and on the right; name the left ones with "
+           "`source.rosbag.colour`");
 
   if (names.camera_info == "none") return chosen;
-  if (!names.camera_info.empty()) {
-    chosen.camera_info = named_topic(bag, names.camera_info, "camera_info", false);
-    return chosen;
-  }
-  const std::string base = base_of(chosen.colour.name);
-  const std::string beside = is_realsense_stream(base, "Color") ? realsense_camera_info(base)
-                                                                : base.substr(0, base.rfind('/') + 1) + "camera_info";
-  for (const BagTopic& topic : topics)
-    if (topic.name == beside && topic.type == camera_info_type && topic.is_readable() && topic.messages > 0)
-      chosen.camera_info = topic;
+  chosen.camera_info = names.camera_info.empty() ? info_beside(bag, chosen.colour.name)
+                                                 : named_topic(bag, names.camera_info, "camera_info", false);
+  if (has_right) chosen.right_camera_info = info_beside(bag, chosen.right.name);
   return chosen;
 }
 
