@@ -45,6 +45,8 @@ Definitions
   F-score           harmonic mean of both
   Chamfer           mean of accuracy and completion
   ghosts            share of the estimate farther than --ghost-distance from the truth
+  thickness         with --thickness: distance of the outermost of several estimated surfaces along the normal of one
+                    true one, at most so far from it: that of walls which a drift has doubled
 Distances are exact, from points with a distance of --spacing on one surface to the triangles of the other.
 
 Both meshes must be in one world frame, unless the trajectories in both frames are given: the rigid motion that
@@ -127,6 +129,11 @@ void add_evaluate_surface_command(CLI::App& app, int& exit_code) {
   command->add_option("--ghost-distance", arguments->options.ghost_distance, "Beyond it surface is a ghost [m]")
       ->check(positive_number())
       ->capture_default_str();
+  command
+      ->add_option("--thickness", arguments->options.thickness_reach,
+                   "Also measure how thick surfaces are, up to this distance from the truth [m]")
+      ->type_name("DISTANCE")
+      ->check(positive_number());
   command->add_option("--spacing", arguments->options.spacing, "Of the points that are compared [m]")
       ->check(CLI::Range(0.001, 10.0))
       ->capture_default_str();

@@ -11,7 +11,8 @@ StaticScene::StaticScene(const Camera& camera, const DenseMapSettings& settings,
     : settings_(settings), sampler_(camera, settings, keeps_labels) {}
 
 std::size_t StaticScene::view_bytes() const {
-  return static_cast<std::size_t>(camera().width) * static_cast<std::size_t>(camera().height) * 5;
+  return static_cast<std::size_t>(camera().width) * static_cast<std::size_t>(camera().height) *
+         (sampler_.keeps_labels() ? 6 : 5);
 }
 
 const KeptView& StaticScene::add(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse,

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <utility>
 
 #include "holdfast/core/simd.hpp"
+#include "lanes.hpp"
 
 namespace holdfast::surface {
 
@@ -45,13 +47,38 @@ void add_vote(Block& block, std::size_t i, std::uint8_t label, int sign) {
   (*block.votes)[i].add(label, sign);
 }
 
-#define HOLDFAST_INLINE __attribute__((always_inline)) static inline
-
-// Eight voxels, on which the compiler works with the instructions of the function into which a kernel is inlined.
-using Float8 = float __attribute__((vector_size(32)));
-using Int8 = std::int32_t __attribute__((vector_size(32)));
 using Short8 = std::uint16_t __attribute__((vector_size(16)));
 using Byte8 = std::uint8_t __attribute__((vector_size(8)));
+
+struct Pixels8 {
+  Float8 depth, near, slope;
+  Int8 weight;
+};
+
+/// The pixels at eight places, each read as a whole.
+HOLDFAST_INLINE Pixels8 load_pixels(const ViewImage::Pixel* pixels, const Int8& place) {
+  static_assert(sizeof(ViewImage::Pixel) == 16 && offsetof(ViewImage::Pixel, near) == 4 &&
+                offsetof(ViewImage::Pixel, slope) == 8 && offsetof(ViewImage::Pixel, weight) == 12);
+  using Float4 = float __attribute__((vector_size(16)));
+  Float8 pair[4];  // the pixels k and k + 4
+  for (int k = 0; k < 4; ++k) {
+    Float4 low, high;
+    std::memcpy(&low, pixels + place[k], sizeof(low));
+    std::memcpy(&high, pixels + place[k + 4], sizeof(high));
+    pair[k] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+  }
+  // The transposed 4x4 of each half.
+  const Float8 a = __builtin_shufflevector(pair[0], pair[1], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Float8 b = __builtin_shufflevector(pair[0], pair[1], 2, 10, 3, 11, 6, 14, 7, 15);
+  const Float8 c = __builtin_shufflevector(pair[2], pair[3], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Float8 d = __builtin_shufflevector(pair[2], pair[3], 2, 10, 3, 11, 6, 14, 7, 15);
+  const Float8 last = __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);
+  Int8 bits;
+  std::memcpy(&bits, &last, sizeof(bits));
+  return {__builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13),
+          __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15),
+          __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13), bits & 255};
+}
 
 /// Adds `amount` to the balance of eight voxels from `first` on, where `is_active`.
 HOLDFAST_INLINE void add_balance(const ViewGeometry& view, Block& block, std::size_t first, const Int8& is_active,
@@ -83,35 +110,30 @@ HOLDFAST_INLINE void update_row(const ViewGeometry& view, float x, float y, floa
   Float8 u = view.fx * (x + steps * view.rotation[6]) * inverse + view.cx;
   Float8 v = view.fy * (y + steps * view.rotation[7]) * inverse + view.cy;
   const Int8 is_inside = (depth >= nearest_depth) & (u >= 0.0F) & (v >= 0.0F) & (u < view.width) & (v < view.height);
-  std::int64_t any[4];
-  std::memcpy(any, &is_inside, sizeof(any));
-  if ((any[0] | any[1] | any[2] | any[3]) == 0) return;
+  if (!any_of(is_inside)) return;
   u = is_inside ? u : Float8{};
   v = is_inside ? v : Float8{};
   const Int8 place =
       __builtin_convertvector(v, Int8) * static_cast<std::int32_t>(view.width) + __builtin_convertvector(u, Int8);
   const Float8 square_margin = ViewGeometry::constant_margin + ViewGeometry::quadratic_margin * depth * depth;
   const Float8 margin = square_margin < view.truncation ? Float8{} + view.truncation : square_margin;
-  Float8 near;
-  for (int k = 0; k < 8; ++k) near[k] = view.pixels[place[k]].near;
   if constexpr (only_carves) {
+    Float8 near;
+    for (int k = 0; k < 8; ++k) near[k] = view.pixels[place[k]].near;
     const Int8 is_active = is_inside & (near > 0.0F) & (depth - near <= margin);
+    if (!any_of(is_active)) return;
     add_balance(view, block, first, is_active, (near - depth > margin) ? Float8{} - 1.0F : Float8{} + 1.0F);
   } else {
-    Float8 surface, slope;
-    Int8 weight;
-    for (int k = 0; k < 8; ++k) {
-      const ViewImage::Pixel& pixel = view.pixels[place[k]];
-      surface[k] = pixel.depth, slope[k] = pixel.slope, weight[k] = pixel.weight;
-    }
+    const Pixels8 pixels = load_pixels(view.pixels, place);
+    const Float8 &surface = pixels.depth, &near = pixels.near, &slope = pixels.slope;
+    const Int8& weight = pixels.weight;
     const Int8 is_free = is_inside & ((near - depth) * slope > margin);
     const Float8 distance = (surface - depth) * slope;
     const Float8 length = distance < 0.0F ? -distance : distance;
     const Int8 is_near = is_inside & ~is_free & (weight != 0) & (length <= view.truncation);
-    add_balance(view, block, first, is_free | (is_near & (distance < 0.5F * view.truncation)),
-                is_free ? Float8{} - 1.0F : Float8{} + 1.0F);
-    std::memcpy(any, &is_near, sizeof(any));
-    if ((any[0] | any[1] | any[2] | any[3]) == 0) return;
+    const Int8 counts = is_free | (is_near & (distance < 0.5F * view.truncation));
+    if (any_of(counts)) add_balance(view, block, first, counts, is_free ? Float8{} - 1.0F : Float8{} + 1.0F);
+    if (!any_of(is_near)) return;
 
     Int8 sum;
     Short8 weight_bits;
@@ -183,7 +205,6 @@ HOLDFAST_LOOPS(Avx2Loops, __attribute__((target("avx2"))))
 #endif
 
 #undef HOLDFAST_LOOPS
-#undef HOLDFAST_INLINE
 
 }  // namespace
 

@@ -72,27 +72,72 @@ Distances distances(const TriangleMesh& from, const TriangleMesh& to, const Surf
   return result;
 }
 
+/// Offsets of the surfaces of a mesh along a normal that face its side.
+std::vector<double> layers(const TriangleTree& tree, const TriangleMesh& mesh, const Eigen::Vector3d& origin,
+                           const Eigen::Vector3d& normal, double reach) {
+  constexpr double same_side = 0.7;      // cosine
+  constexpr double one_crossing = 1e-4;  // of an edge that two triangles share [m]
+  std::vector<double> offsets;
+  for (const TriangleTree::Crossing& crossing : tree.crossings(origin, normal, reach))
+    if (mesh.area_vector(crossing.triangle).normalized().dot(normal) > same_side) offsets.push_back(crossing.along);
+  std::sort(offsets.begin(), offsets.end());
+  offsets.erase(std::unique(offsets.begin(), offsets.end(), [](double a, double b) { return b - a < one_crossing; }),
+                offsets.end());
+  return offsets;
+}
+
+void measure_thickness(const TriangleMesh& truth, const TriangleMesh& seen, const TriangleMesh& estimate,
+                       SurfaceEvaluation& result) {
+  const TriangleTree truth_tree(truth), tree(estimate);
+  const double reach = result.options.thickness_reach;
+  std::vector<double> all;
+  std::size_t doubled = 0;
+  for (const SurfacePoint& point : points_on(seen, result.options.spacing)) {
+    const Eigen::Vector3d normal = seen.area_vector(point.triangle).normalized();
+    // The outermost surfaces may lie twice as far apart as the truth reaches.
+    if (layers(truth_tree, truth, point.position, normal, 2.0 * reach).size() > 1) continue;
+    const std::vector<double> found = layers(tree, estimate, point.position, normal, reach);
+    if (found.empty()) continue;
+    all.push_back(found.back() - found.front());
+    doubled += found.size() > 1 ? 1 : 0;
+  }
+  if (all.empty()) return;
+  const auto count = static_cast<double>(all.size());
+  for (const double thickness : all) result.thickness_mean += thickness / count;
+  const auto place = all.begin() + static_cast<std::ptrdiff_t>(0.99 * (count - 1.0));
+  std::nth_element(all.begin(), place, all.end());
+  result.thickness_99 = *place;
+  result.doubled = static_cast<double>(doubled) / count;
+}
+
 void require_area(const TriangleMesh& mesh, const char* name, double spacing) {
   if (mesh.area() < spacing * spacing)
     throw Error(std::string("the ") + name + " has no surface; expected a mesh with triangles, in metres");
 }
 
 std::vector<std::pair<const char*, double>> figures(const SurfaceEvaluation& e) {
-  return {{"accuracy", e.accuracy},
-          {"accuracy_median", e.accuracy_median},
-          {"completion", e.completion},
-          {"completion_median", e.completion_median},
-          {"precision", e.precision},
-          {"completion_ratio", e.completion_ratio},
-          {"f_score", e.f_score},
-          {"chamfer", e.chamfer},
-          {"normal_agreement", e.normal_agreement},
-          {"ghosts", e.ghosts},
-          {"truth_area", e.truth_area},
-          {"estimate_area", e.estimate_area},
-          {"threshold", e.options.threshold},
-          {"ghost_distance", e.options.ghost_distance},
-          {"spacing", e.options.spacing}};
+  std::vector<std::pair<const char*, double>> values = {{"accuracy", e.accuracy},
+                                                        {"accuracy_median", e.accuracy_median},
+                                                        {"completion", e.completion},
+                                                        {"completion_median", e.completion_median},
+                                                        {"precision", e.precision},
+                                                        {"completion_ratio", e.completion_ratio},
+                                                        {"f_score", e.f_score},
+                                                        {"chamfer", e.chamfer},
+                                                        {"normal_agreement", e.normal_agreement},
+                                                        {"ghosts", e.ghosts},
+                                                        {"truth_area", e.truth_area},
+                                                        {"estimate_area", e.estimate_area},
+                                                        {"threshold", e.options.threshold},
+                                                        {"ghost_distance", e.options.ghost_distance},
+                                                        {"spacing", e.options.spacing}};
+  if (e.options.thickness_reach > 0.0)
+    for (const auto& [name, value] : {std::pair{"thickness_reach", e.options.thickness_reach},
+                                      {"thickness_mean", e.thickness_mean},
+                                      {"thickness_99", e.thickness_99},
+                                      {"doubled", e.doubled}})
+      values.emplace_back(name, value);
+  return values;
 }
 
 }  // namespace
@@ -118,6 +163,7 @@ SurfaceEvaluation evaluate_surface(const TriangleMesh& truth, const TriangleMesh
   result.chamfer = 0.5 * (result.accuracy + result.completion);
   result.truth_area = seen.area();
   result.estimate_area = estimate.area();
+  if (options.thickness_reach > 0.0) measure_thickness(truth, seen, estimate, result);
   result.truth_points = to_estimate.points;
   result.estimate_points = to_truth.points;
   return result;
@@ -150,6 +196,9 @@ std::string to_text(const SurfaceEvaluation& e) {
   add("normals     %.3f mean cosine\n", e.normal_agreement);
   add("ghosts      %.3f %% of the estimate is farther than %.3g cm from the truth\n", 100 * e.ghosts,
       100 * e.options.ghost_distance);
+  if (e.options.thickness_reach > 0.0)
+    add("thickness   %.2f cm mean, %.2f cm at 99 %%; %.2f %% of the truth has two surfaces\n", 100 * e.thickness_mean,
+        100 * e.thickness_99, 100 * e.doubled);
   return text;
 }
 

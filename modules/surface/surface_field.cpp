@@ -33,7 +33,8 @@ void create_blocks(const ViewImage& image, const Eigen::Isometry3d& T_world_came
   constexpr double reach = 2.0, most_reach = 5.0, step = 3.0;  // [voxels]
   const double scale = 1.0 / (voxel * Block::side);
   const Camera& camera = image.camera();
-  Eigen::Vector3i last = Eigen::Vector3i::Constant(std::numeric_limits<int>::max());
+  // Blocks that were met last, by a hash: few are looked up in the tree.
+  std::vector<Eigen::Vector3i> recent(256, Eigen::Vector3i::Constant(std::numeric_limits<int>::max()));
   for (int y = 0; y < camera.height; y += stride)
     for (int x = 0; x < camera.width; x += stride) {
       const ViewImage::Pixel& pixel = image.at(x, y);
@@ -46,6 +47,8 @@ void create_blocks(const ViewImage& image, const Eigen::Isometry3d& T_world_came
         const Eigen::Vector3d point = T_world_camera.translation() + depth * ray;
         const Eigen::Vector3i block(floor_of(point.x() * scale), floor_of(point.y() * scale),
                                     floor_of(point.z() * scale));
+        const auto hash = static_cast<std::uint32_t>(block.x() + 5 * block.y() + 31 * block.z());
+        Eigen::Vector3i& last = recent[hash % recent.size()];
         if (block == last) continue;
         blocks.at(block);
         last = block;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace holdfast {
 
@@ -102,6 +103,49 @@ TriangleTree::Nearest TriangleTree::nearest(const Eigen::Vector3d& point, double
     }
   }
   return best;
+}
+
+std::vector<TriangleTree::Crossing> TriangleTree::crossings(const Eigen::Vector3d& origin,
+                                                            const Eigen::Vector3d& direction, double reach) const {
+  std::vector<Crossing> found;
+  if (nodes_.empty()) return found;
+  const Eigen::Vector3f from = (origin - reach * direction).cast<float>(),
+                        to = (origin + reach * direction).cast<float>();
+  // Few boxes are near a segment of some centimetres: those that touch its box are searched.
+  Eigen::AlignedBox3f segment(from.cwiseMin(to), from.cwiseMax(to));
+  segment.min().array() -= 1e-5F, segment.max().array() += 1e-5F;
+  std::vector<std::uint32_t> stack{0};
+  while (!stack.empty()) {
+    const std::uint32_t number = stack.back();
+    stack.pop_back();
+    const Node& node = nodes_[number];
+    if (!node.box.intersects(segment)) continue;
+    if (node.second != 0) {
+      stack.push_back(node.second);
+      stack.push_back(number + 1);
+      continue;
+    }
+    for (std::uint32_t i = node.begin; i < node.end; ++i)
+      if (const auto along = crossing_of(order_[i], origin, direction); along && std::abs(*along) <= reach)
+        found.push_back({*along, order_[i]});
+  }
+  return found;
+}
+
+std::optional<double> TriangleTree::crossing_of(std::size_t triangle, const Eigen::Vector3d& origin,
+                                                const Eigen::Vector3d& direction) const {
+  const Eigen::Vector3d a = mesh_.corner(triangle, 0).cast<double>();
+  const Eigen::Vector3d ab = mesh_.corner(triangle, 1).cast<double>() - a,
+                        ac = mesh_.corner(triangle, 2).cast<double>() - a;
+  const Eigen::Vector3d p = direction.cross(ac);
+  const double determinant = ab.dot(p);
+  if (determinant == 0.0) return std::nullopt;
+  const Eigen::Vector3d s = origin - a;
+  const double u = s.dot(p) / determinant;
+  const Eigen::Vector3d q = s.cross(ab);
+  const double v = direction.dot(q) / determinant;
+  if (!(u >= 0.0 && v >= 0.0 && u + v <= 1.0)) return std::nullopt;
+  return ac.dot(q) / determinant;
 }
 
 }  // namespace holdfast

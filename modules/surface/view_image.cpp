@@ -7,15 +7,12 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "holdfast/core/depth_noise.hpp"
 #include "holdfast/dense_map/kept_view.hpp"
+#include "slopes.hpp"
 
 namespace holdfast::surface {
 
 namespace {
-
-constexpr float smallest_cosine = 0.25F;  // of the viewing angle; closer to the rim of a surface depth says little
-constexpr int reach = 3;                  // of the normal, to each side [px]
 
 float depth_of(std::uint16_t bits) {
   return static_cast<float>(bits & KeptView::depth_bits) * static_cast<float>(KeptView::depth_unit);
@@ -34,8 +31,7 @@ ViewImage::ViewImage(const KeptView& view, const Camera& kept, const SurfaceSett
   const cv::Mat depths = read_depth(view, static_cast<float>(settings.maximum_depth));
   if (only_carves_) return;
   labels_ = view.labels.isContinuous() ? view.labels : view.labels.clone();
-  for (int y = 0; y < camera.height; ++y)
-    for (int x = 0; x < camera.width; ++x) set_slope(depths, x, y);
+  set_slopes(depths, rays_x_, rays_y_, pixels_.data());
 }
 
 cv::Mat ViewImage::read_depth(const KeptView& view, float maximum_depth) {
@@ -56,32 +52,6 @@ cv::Mat ViewImage::read_depth(const KeptView& view, float maximum_depth) {
       pixel->blue = colour[0], pixel->green = colour[1], pixel->red = colour[2];
     }
   return depths;
-}
-
-/// Normal from the depths of four pixels around, or of the centre in place of those that are no continuation of it.
-void ViewImage::set_slope(const cv::Mat& depths, int x, int y) {
-  const float centre = depths.ptr<float>(y)[x];
-  if (centre <= 0.0F) return;
-  const float gap = static_cast<float>(reach) * depth_noise::continues_normal(centre);
-  const auto point = [&](int column, int row) -> Eigen::Vector3f {
-    column = std::clamp(column, 0, camera_.width - 1), row = std::clamp(row, 0, camera_.height - 1);
-    float depth = depths.ptr<float>(row)[column];
-    if (depth <= 0.0F || std::abs(depth - centre) > gap) column = x, row = y, depth = centre;
-    return {rays_x_[static_cast<std::size_t>(column)] * depth, rays_y_[static_cast<std::size_t>(row)] * depth, depth};
-  };
-  const Eigen::Vector3f normal =
-      (point(x + reach, y) - point(x - reach, y)).cross(point(x, y + reach) - point(x, y - reach));
-  const float length = normal.norm();
-  if (!(length > 0.0F)) return;
-  const Eigen::Vector3f ray(rays_x_[static_cast<std::size_t>(x)], rays_y_[static_cast<std::size_t>(y)], 1.0F);
-  Pixel& pixel = pixels_[static_cast<std::size_t>(y * camera_.width + x)];
-  const float along = std::abs(normal.dot(ray)) / length;
-  pixel.slope = std::max(along, smallest_slope);
-  const float cosine = along / ray.norm();
-  if (pixel.depth <= 0.0F || cosine < smallest_cosine) return;
-  const float deviation = depth_noise::alignment_deviation(pixel.depth) / depth_noise::alignment_deviation(0.0F);
-  const float weight = 64.0F * cosine * cosine / (deviation * deviation);
-  pixel.weight = static_cast<std::uint8_t>(std::clamp(weight + 0.5F, 1.0F, 64.0F));
 }
 
 float ViewImage::farthest(int left, int top, int right, int bottom) const {

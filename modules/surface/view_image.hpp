@@ -50,7 +50,6 @@ class ViewImage {
  private:
   /// Fills the pixels without slope and weight; returns all depths, those of dynamic pixels included.
   cv::Mat read_depth(const KeptView& view, float maximum_depth);
-  void set_slope(const cv::Mat& depths, int x, int y);
 
   Camera camera_;
   bool only_carves_;

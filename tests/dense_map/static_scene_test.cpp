@@ -142,6 +142,7 @@ TEST(StaticScene, KeepsABoundedNumberOfViewsSpreadInTime) {
     widest = std::max(widest, scene.views()[i].frame_index - scene.views()[i - 1].frame_index);
   EXPECT_LE(widest, 17U);
   EXPECT_EQ(scene.view_bytes(), 80U * 60U * 5U);
+  EXPECT_EQ(StaticScene(world.camera, settings, true).view_bytes(), 80U * 60U * 6U);
 }
 
 TEST(StaticScene, DoesNotDependOnTheOrderInWhichMasksCome) {

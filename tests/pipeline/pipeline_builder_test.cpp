@@ -296,6 +296,17 @@ TEST(PipelineBuilder, ASurfaceIsCheckedBeforeTheRun) {
   EXPECT_THAT(complaints(builder), HasSubstr("this build has no OpenVDB"));
 }
 
+TEST(PipelineBuilder, ClassesOfASurfaceWithoutASegmenterAreNamed) {
+  if (!SurfaceField::is_available()) GTEST_SKIP() << "built without OpenVDB";
+  test::PointWorld world(find_camera("tum_fr1").value());
+  const auto warnings_of = [&](bool classes) {
+    return builder_for(world).surface({.enabled = true, .classes = classes}).build().warnings();
+  };
+  ASSERT_EQ(warnings_of(true).size(), 1U);
+  EXPECT_THAT(warnings_of(true)[0].message, HasSubstr("'surface.classes' has no effect without a segmenter"));
+  EXPECT_TRUE(warnings_of(false).empty());
+}
+
 TEST(PipelineBuilder, AnImuWithoutMeasurementsIsNamed) {
   test::PointWorld world(find_camera("tum_fr1").value());
   const auto warnings_of = [&](bool has_imu) {

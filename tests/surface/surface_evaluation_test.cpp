@@ -74,6 +74,30 @@ TEST(SurfaceEvaluation, MeasuresOffsetHolesAndGhosts) {
   EXPECT_EQ(evaluate_surface(truth, seen, estimate, {}).completion_ratio, 1.0);
 }
 
+TEST(SurfaceEvaluation, MeasuresTheThicknessOfADoubledWall) {
+  // A quarter of the floor is there twice, 6 cm apart. What faces the other side does not count, nor does the floor
+  // where the truth itself has two surfaces.
+  TriangleMesh truth = floor_at(0.0, 10), estimate = floor_at(0.0, 10), double_part = floor_at(0.06, 10);
+  std::erase_if(double_part.triangles, [&](const auto& t) {
+    return double_part.vertices[t[0]].position.x() > 0.45F || double_part.vertices[t[0]].position.y() > 0.45F;
+  });
+  TriangleMesh back = floor_at(-0.05, 10);
+  for (auto& t : back.triangles) std::swap(t[1], t[2]);
+  append(estimate, double_part);
+  append(estimate, back);
+  SurfaceEvaluationOptions options;
+  EXPECT_EQ(evaluate_surface(truth, truth, estimate, options).doubled, 0.0);
+  options.thickness_reach = 0.1;
+  const SurfaceEvaluation result = evaluate_surface(truth, truth, estimate, options);
+  EXPECT_NEAR(result.doubled, 0.25, 5e-3);
+  EXPECT_NEAR(result.thickness_mean, 0.25 * 0.06, 5e-4);
+  EXPECT_NEAR(result.thickness_99, 0.06, 1e-6);
+  EXPECT_THAT(to_text(result), testing::HasSubstr("thickness   1.50 cm mean, 6.00 cm at 99 %; 25.0"));
+  EXPECT_THAT(to_json(result), testing::HasSubstr("\"doubled\": 0.25"));
+  append(truth, double_part);
+  EXPECT_EQ(evaluate_surface(truth, truth, estimate, options).doubled, 0.0);
+}
+
 TEST(SurfaceEvaluation, RefusesMeshesWithoutArea) {
   const TriangleMesh floor = floor_at(0.0, 2);
   EXPECT_THROW(evaluate_surface(floor, floor, {}, {}), Error);

@@ -55,6 +55,7 @@ class ViewSampler {
 
   /// The pinhole camera of the kept views.
   const Camera& camera() const { return small_; }
+  bool keeps_labels() const { return keeps_labels_; }
 
   /// Creates the kept view of a keyframe, at coarse.T_view_camera if the source states a SensorFrame::depth_delay.
   /// Dynamic pixels are those whose label (`labels`, 8UC1 of the image's size; coarse.mask if `labels` is empty) is

@@ -12,7 +12,9 @@ namespace holdfast {
 struct SurfaceEvaluationOptions {
   double threshold = 0.05;       ///< distance up to which a point counts as right, for the ratios and the F-score [m]
   double ghost_distance = 0.15;  ///< estimated surface farther from the truth is a ghost [m]
-  double spacing = 0.02;         ///< of the points at which distances are measured [m]: one per square of this side
+  /// Reach of the thickness along the normal of the truth, to both sides [m]; 0 = it is not measured.
+  double thickness_reach = 0.0;
+  double spacing = 0.02;  ///< of the points at which distances are measured [m]: one per square of this side
 };
 
 /// Agreement of an estimated surface with the true one, from points spread evenly over both.
@@ -27,6 +29,11 @@ struct SurfaceEvaluation {
   double chamfer = 0.0;            ///< mean of accuracy and completion [m]
   double normal_agreement = 0.0;   ///< mean absolute cosine of the angle between the normals, within the threshold
   double ghosts = 0.0;             ///< share of the estimate farther from the truth than ghost_distance, 0 to 1
+  /// Distance between the outermost of the estimated surfaces that lie along the normal of the truth within
+  /// thickness_reach, and face the same side: 0 = one surface. Of points of `seen` at which the truth has one surface,
+  /// and the estimate has one at least [m].
+  double thickness_mean = 0.0, thickness_99 = 0.0;
+  double doubled = 0.0;  ///< share of these points at which there are two surfaces or more, 0 to 1
   double truth_area = 0.0, estimate_area = 0.0;  ///< [m^2]
   std::size_t truth_points = 0, estimate_points = 0;
   SurfaceEvaluationOptions options;

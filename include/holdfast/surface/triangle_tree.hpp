@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "holdfast/surface/triangle_mesh.hpp"
@@ -27,6 +28,15 @@ class TriangleTree {
   /// The nearest point closer than `limit` [m]; the distance is infinite if there is none.
   Nearest nearest(const Eigen::Vector3d& point, double limit = std::numeric_limits<double>::infinity()) const;
 
+  /// A crossing of a line with the mesh.
+  struct Crossing {
+    double along = 0.0;  ///< signed distance from the origin of the line [m]
+    std::size_t triangle = 0;
+  };
+  /// The crossings of a line with the mesh (Moeller and Trumbore, JGT 1997) up to `reach` [m] to both sides of its
+  /// origin, in no particular order. `direction` has unit length.
+  std::vector<Crossing> crossings(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double reach) const;
+
  private:
   struct Node {
     Eigen::AlignedBox3f box;
@@ -34,6 +44,8 @@ class TriangleTree {
     std::uint32_t second = 0;          // child, of an inner node; the first one follows it
   };
   void build(std::uint32_t begin, std::uint32_t end);
+  std::optional<double> crossing_of(std::size_t triangle, const Eigen::Vector3d& origin,
+                                    const Eigen::Vector3d& direction) const;
 
   const TriangleMesh& mesh_;
   std::vector<std::uint32_t> order_;
