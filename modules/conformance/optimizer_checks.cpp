@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "check.hpp"
+#include "optimizer_factor_checks.hpp"
 #include "optimizer_problems.hpp"
 
 namespace holdfast::conformance {
@@ -335,7 +336,7 @@ std::vector<Check> optimizer_checks() {
       "III-C)."};
   const Promise unchanged{header, "false: nothing was changed"};
   const Promise threads{header, "Any method may be called by several threads at once, each with a problem of its own."};
-  return {
+  std::vector<Check> checks = {
       {"FindsAPose", pose, finds_a_pose},
       {"MarksInliersOfAPose", {header, "out: 1 where the final chi-square test passed"}, marks_inliers_of_a_pose},
       {"LeavesOutWhatHasNoWeight",
@@ -364,8 +365,9 @@ std::vector<Check> optimizer_checks() {
       {"LeavesAGraphThatCannotBeSolved", unchanged, leaves_a_graph_that_cannot_be_solved},
       {"SurvivesNumbersThatAreNone",
        {header,
-        "Numbers that are not finite in an observation or an edge make it an outlier or the problem unusable, never a "
-        "pose or point that is not finite."},
+        "Numbers that are not finite in an observation, a factor or an edge make it an outlier or the problem "
+        "unusable, "
+        "never a pose or point that is not finite."},
        survives_numbers_that_are_none},
       {"LeavesWhatIsNotOut", {header, "What is not marked `out` is not written to."}, leaves_what_is_not_out},
       {"SameProblemSameBits",
@@ -375,6 +377,9 @@ std::vector<Check> optimizer_checks() {
       {"InstancesDoNotMeet", threads, instances_do_not_meet},
       {"Time", threads, time},
   };
+  const std::vector<Check> of_factors = optimizer_factor_checks();
+  checks.insert(checks.end(), of_factors.begin(), of_factors.end());
+  return checks;
 }
 
 }  // namespace holdfast::conformance

@@ -67,6 +67,14 @@ void BundleSelection::select(const BundleProblem& problem) {
     observation_counts[i] = observation_counts[i] && point_counts[observation.point];
     if (observation_counts[i] && !problem.poses[observation.pose].fixed) pose_moves[observation.pose] = 1;
   }
+  if (!problem.factors.empty()) select_by_factors(problem);
+}
+
+void BundleSelection::select_by_factors(const BundleProblem& problem) {
+  const FactorEvaluation evaluation(problem);
+  for (const FactorEvaluation::Factor& factor : evaluation.factors())
+    for (const std::uint32_t pose : factor.poses)
+      if (pose != FactorEvaluation::none && !problem.poses[pose].fixed) pose_moves[pose] = 1;
 }
 
 }  // namespace holdfast

@@ -134,7 +134,9 @@ TEST(BadModules, FiltersAreFound) {
 
 TEST(BadModules, OptimizersAreFound) {
   expect_found("optimizer",
-               {{"counts_calls",
+               {{"denies_factors", {"SolvesAnInertialBundle"}},
+                {"ignores_factors", {"EstimatesAFreeScale", "LeavesFactorsThatCannotBeUsed", "SolvesAnInertialBundle"}},
+                {"counts_calls",
                  {"InstancesDoNotMeet", "LeavesAPoseThatCannotBeFound", "ManyThreadsAtOnce", "SameProblemSameBits"}},
                 {"forgets_inliers", {"MarksInliersOfAPose", "SurvivesNumbersThatAreNone"}},
                 {"ignores_weights", {"LeavesOutWhatHasNoWeight", "LeavesWhatIsNotOut"}},

@@ -34,12 +34,14 @@ bool is_outlier(const Camera& camera, const Eigen::Isometry3d& T_camera_world, c
 struct BundleSelection {
   std::vector<std::uint8_t> observation_counts;
   std::vector<std::uint8_t> point_counts;
-  std::vector<std::uint8_t> pose_moves;  ///< 1 for free poses with a selected observation
+  std::vector<std::uint8_t> pose_moves;  ///< 1 for free poses with a selected observation or a factor
 
   /// Throws CheckError if the problem has no camera or an index out of range. Keeps its memory between calls.
   void select(const BundleProblem& problem);
 
  private:
+  void select_by_factors(const BundleProblem& problem);
+
   std::vector<std::uint32_t> rows_;
 };
 

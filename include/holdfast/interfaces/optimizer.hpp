@@ -10,6 +10,7 @@
 #include "holdfast/core/camera.hpp"
 #include "holdfast/core/module.hpp"
 #include "holdfast/geometry/pose_problem.hpp"
+#include "holdfast/interfaces/bundle_factors.hpp"
 
 namespace holdfast {
 
@@ -59,7 +60,9 @@ extern template PoseSummary geometry::adjust_pose(PoseProblem& problem, const Po
 extern template PoseSummary geometry::find_pose(PoseProblem& problem, const PnpOptions& options);
 /// \endcond
 
-/// Poses and points together: local and full bundle adjustment (Mur-Artal and Tardos 2017, section III-C).
+/// Poses and points together: local and full bundle adjustment (Mur-Artal and Tardos 2017, section III-C); with factors
+/// a visual-inertial one (Mur-Artal and Tardos, "Visual-inertial monocular SLAM with map reuse", RA-L 2017, equation
+/// 8).
 struct BundleProblem {
   /// The pose of one camera.
   struct Pose {
@@ -81,6 +84,7 @@ struct BundleProblem {
   std::vector<Pose> poses;
   std::vector<Eigen::Vector3d> points;  ///< world [m], in and out
   std::vector<Observation> observations;
+  BundleFactors factors;      ///< of other kinds than observations; have plain squares in both phases
   int robust_iterations = 5;  ///< with Huber's cost, then outliers are set aside
   int final_iterations = 10;  ///< without it, on what is left; 0 = skip
   /// Convergence tolerance of the relative cost decrease in both phases; 0 = the optimizer's default.
@@ -129,14 +133,18 @@ struct GraphSummary {
 
 /// Solves the least-squares problems of the pipeline. Any method may be called by several threads at once, each with a
 /// problem of its own. With CreationContext::sequential the results are bit-identical from run to run. What is not
-/// marked `out` is not written to. Numbers that are not finite in an observation or an edge make it an outlier or the
-/// problem unusable, never a pose or point that is not finite.
+/// marked `out` is not written to. Numbers that are not finite in an observation, a factor or an edge make it an
+/// outlier or the problem unusable, never a pose or point that is not finite.
 class Optimizer : public Module {
  public:
   static constexpr const char* kind = "optimizer";
 
   /// Motion-only bundle adjustment. The default is geometry::adjust_pose with its default options.
   virtual PoseSummary optimize_pose(PoseProblem& problem);
+  /// Whether optimize_bundle() solves problems with factors of this kind. A problem with factors of another kind is not
+  /// usable. Poses, motions, gravity and scale that no factor and no observation ties to fixed ones are held only by
+  /// the damping.
+  virtual bool supports(FactorKind) const { return false; }
   /// `stop` is read between iterations.
   virtual BundleSummary optimize_bundle(BundleProblem& problem, const std::atomic<bool>& stop) = 0;
   virtual GraphSummary optimize_pose_graph(PoseGraphProblem& problem) = 0;

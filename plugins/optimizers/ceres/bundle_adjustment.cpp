@@ -9,6 +9,7 @@
 #include <chrono>
 #include <deque>
 
+#include "factor_cost.hpp"
 #include "holdfast/core/check.hpp"
 #include "holdfast/interfaces/bundle_selection.hpp"
 #include "observation_cost.hpp"
@@ -35,7 +36,8 @@ class Bundle {
         settings_(settings),
         limits_{settings.chi_square_two, settings.chi_square_three},
         camera_(*problem.camera),
-        updater_(states_) {}
+        evaluation_(problem),
+        updater_(states_, parameters_) {}
 
   BundleSummary run(const std::atomic<bool>& stop);
 
@@ -45,6 +47,7 @@ class Bundle {
   void choose();
   void build();
   void add_free(const Observation& observation);
+  void add_factor(const FactorEvaluation::Factor& factor);
   Measurement measurement_of(const Observation& observation) const;
   void set_outliers_aside();
   bool is_an_outlier(const Observation& observation) const {
@@ -57,8 +60,10 @@ class Bundle {
   const CeresSettings& settings_;
   const ChiSquareLimits limits_;
   const Camera camera_;
+  const FactorEvaluation evaluation_;
   std::vector<PoseState> states_;
-  PoseUpdater updater_;
+  FactorParameters parameters_;
+  StateUpdater updater_;
   std::vector<Eigen::Vector3d> points_;
   BundleSelection selection_;
   std::vector<std::uint32_t> free_;   // observations in the problem, from free poses
@@ -71,6 +76,7 @@ class Bundle {
   std::deque<FreePoseCost<2>> free_two_;
   std::deque<FreePoseCost<3>> free_three_;
   std::deque<FixedPosesCost> fixed_costs_;
+  std::deque<FactorCost> factor_costs_;
   std::unique_ptr<ceres::Problem> ceres_;
 };
 
@@ -109,6 +115,25 @@ void Bundle::add_free(const Observation& observation) {
   ceres_->AddResidualBlock(cost, loss, pose.parameters, point);
 }
 
+void Bundle::add_factor(const FactorEvaluation::Factor& factor) {
+  constexpr std::uint32_t none = FactorEvaluation::none;
+  const std::array<bool, 3> world_moves = evaluation_.world_moves();
+  FactorCost::Free free{};
+  std::vector<double*> blocks;
+  for (std::size_t i = 0; i < 2; ++i) {
+    free[i] = factor.poses[i] != none && !problem_.poses[factor.poses[i]].fixed;
+    if (free[i]) blocks.push_back(states_[factor.poses[i]].parameters);
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    free[2 + i] = factor.motions[i] != none && evaluation_.motion_moves(factor.motions[i]);
+    if (free[2 + i]) blocks.push_back(parameters_.motions[factor.motions[i]].data());
+  }
+  free[4] = factor.has_world && (world_moves[0] || world_moves[2]);
+  if (free[4]) blocks.push_back(parameters_.world.data());
+  ceres_->AddResidualBlock(&factor_costs_.emplace_back(evaluation_, factor, parameters_.states, states_, free), nullptr,
+                           blocks);
+}
+
 void Bundle::build() {
   ceres::Problem::Options options;
   options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -131,6 +156,7 @@ void Bundle::build() {
     const std::span<const FixedObservation> group(fixed_observations_.data() + begin, end - begin);
     ceres_->AddResidualBlock(&fixed_costs_.emplace_back(camera_, group, is_robust_), nullptr, points_[point].data());
   }
+  for (const FactorEvaluation::Factor& factor : evaluation_.factors()) add_factor(factor);
 }
 
 void Bundle::set_outliers_aside() {
@@ -143,15 +169,19 @@ void Bundle::set_outliers_aside() {
 
 bool Bundle::solve(int iterations, const std::atomic<bool>& stop, BundleSummary& summary, double& cost_before) {
   ceres::Solver::Options options;
-  // The groups are sets of addresses; poses and points stand in one array each, so their order is that of the problem.
+  // The groups are sets of addresses; each group stands in one array, so that its order is that of the problem.
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   int free_poses = 0;
   for (std::size_t i = 0; i < points_.size(); ++i)
     if (selection_.point_counts[i]) ordering->AddElementToGroup(points_[i].data(), 0);
   for (std::size_t i = 0; i < states_.size(); ++i)
     if (selection_.pose_moves[i]) ordering->AddElementToGroup(states_[i].parameters, 1), ++free_poses;
+  for (std::size_t i = 0; i < parameters_.motions.size(); ++i)
+    if (evaluation_.motion_moves(i)) ordering->AddElementToGroup(parameters_.motions[i].data(), 2);
+  if (ceres_->HasParameterBlock(parameters_.world.data())) ordering->AddElementToGroup(parameters_.world.data(), 3);
   options.linear_solver_ordering = std::move(ordering);
   options.linear_solver_type = free_poses <= settings_.dense_poses ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
+  if (free_.empty()) options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;  // no point to eliminate
   // CHOLMOD starts threads of its own through OpenMP and BLAS, whatever num_threads says.
   options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   options.max_num_iterations = iterations;
@@ -165,6 +195,7 @@ bool Bundle::solve(int iterations, const std::atomic<bool>& stop, BundleSummary&
   ceres::Solver::Summary result;
   ceres::Solve(options, ceres_.get(), &result);
   for (PoseState& state : states_) state.update();
+  parameters_.update(states_);
   summary.iterations += std::max(0, static_cast<int>(result.iterations.size()) - 1);
   summary.final_cost = result.final_cost;
   summary.stopped = result.termination_type == ceres::USER_SUCCESS;
@@ -177,12 +208,17 @@ BundleSummary Bundle::run(const std::atomic<bool>& stop) {
   states_.resize(problem_.poses.size());
   for (std::size_t i = 0; i < states_.size(); ++i) states_[i].set(problem_.poses[i].T_camera_world);
   points_ = problem_.points;
+  if (!evaluation_.factors().empty()) {
+    parameters_.states = evaluation_.states();
+    parameters_.motions = parameters_.states.motions;
+  }
   choose();
   if (stop.load(std::memory_order_relaxed)) {
     summary.stopped = true;
     return summary;
   }
-  if (free_.empty()) return summary;
+  if (free_.empty() && evaluation_.factors().empty()) return summary;
+  if (!evaluation_.is_finite()) return summary;
   build();
   if (!solve(problem_.robust_iterations, stop, summary, summary.initial_cost)) return summary;
   if (!summary.stopped && problem_.final_iterations > 0) {
@@ -193,6 +229,10 @@ BundleSummary Bundle::run(const std::atomic<bool>& stop) {
   for (std::size_t i = 0; i < states_.size(); ++i)
     if (selection_.pose_moves[i] && !states_[i].T_camera_world().matrix().allFinite()) return summary;
 
+  for (std::size_t i = 0; i < parameters_.motions.size(); ++i)
+    if (!parameters_.motions[i].allFinite() && evaluation_.motion_moves(i)) return summary;
+  if (!parameters_.world.allFinite()) return summary;
+
   for (Observation& observation : problem_.observations) {
     observation.outlier = is_an_outlier(observation);
     summary.outliers += observation.outlier;
@@ -200,6 +240,7 @@ BundleSummary Bundle::run(const std::atomic<bool>& stop) {
   for (std::size_t i = 0; i < states_.size(); ++i)
     if (selection_.pose_moves[i]) problem_.poses[i].T_camera_world = states_[i].T_camera_world();
   problem_.points = std::move(points_);
+  evaluation_.write(parameters_.states, problem_);
   summary.usable = true;
   return summary;
 }

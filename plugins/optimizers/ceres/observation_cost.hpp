@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ceres/evaluation_callback.h>
 #include <ceres/loss_function.h>
 #include <ceres/sized_cost_function.h>
 
@@ -47,19 +46,6 @@ struct PoseState {
     result.translation() = translation;
     return result;
   }
-};
-
-/// Brings the derived parts of the free poses up to date before each evaluation.
-class PoseUpdater final : public ceres::EvaluationCallback {
- public:
-  explicit PoseUpdater(std::vector<PoseState>& poses) : poses_(poses) {}
-  void PrepareForEvaluation(bool, bool new_evaluation_point) override {
-    if (new_evaluation_point)
-      for (PoseState& pose : poses_) pose.update();
-  }
-
- private:
-  std::vector<PoseState>& poses_;
 };
 
 /// Huber's cost while `is_robust` is set, plain squares otherwise.

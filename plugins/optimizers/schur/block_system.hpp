@@ -29,6 +29,13 @@ class BlockSystem {
   /// The block's elements, column by column.
   double* elements(std::size_t block) { return values_.data() + 36 * block; }
   void set_zero();
+  /// Calls function(row, column, elements) for each block in the order of rows and columns.
+  template <class Function>
+  void for_each_block(Function&& function) const {
+    for (std::size_t row = 0; row < poses_; ++row)
+      for (std::uint32_t block = first_[row]; block < first_[row + 1]; ++block)
+        function(row, static_cast<std::size_t>(columns_[block]), values_.data() + std::size_t{36} * block);
+  }
 
   /// Solves for the right-hand side, six numbers per pose; the solution replaces it. Returns false if the matrix is not
   /// positive definite or the solution not finite.

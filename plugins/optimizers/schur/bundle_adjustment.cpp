@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <span>
 
 #include "holdfast/geometry/se3.hpp"
 
@@ -35,10 +36,14 @@ BundleSummary BundleAdjuster::run(BundleProblem& problem, const std::atomic<bool
   step_tolerance_ = own ? 0.0 : settings_.step_tolerance;
   stops_early_ = !own;
   arrays_.build(problem, selection_);
-  if (arrays_.free_count() == 0) return summary;
+  if (arrays_.free_count() == 0 && problem.factors.empty()) return summary;
+  if (!take_factors(problem)) {
+    factors_.end();
+    return summary;
+  }
   build_system();
   damping_ = Damping();
-  summary.initial_cost = kernels_.cost(view(true), nullptr);
+  summary.initial_cost = current_cost(true);
   summary.final_cost = minimise(problem.robust_iterations, true, stop, summary);
   if (!summary.stopped && problem.final_iterations > 0) {
     find_outliers(problem);
@@ -47,8 +52,16 @@ BundleSummary BundleAdjuster::run(BundleProblem& problem, const std::atomic<bool
     summary.final_cost = minimise(problem.final_iterations, false, stop, summary);
   }
   if (std::isfinite(summary.final_cost)) summary.usable = write(problem, summary);
+  factors_.end();
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return summary;
+}
+
+bool BundleAdjuster::take_factors(const BundleProblem& problem) {
+  factors_.end();
+  if (problem.factors.empty()) return true;
+  if (!factors_.begin(problem, std::span(arrays_.pose_indices).first(arrays_.free_count()))) return false;
+  return !factors_.empty() || arrays_.free_count() > 0;
 }
 
 void BundleAdjuster::build_system() {
@@ -92,33 +105,43 @@ BundleView BundleAdjuster::view(bool is_robust) const {
   return view;
 }
 
+double BundleAdjuster::current_cost(bool is_robust) {
+  const double cost = kernels_.cost(view(is_robust), nullptr);
+  return factors_.empty() ? cost : cost + factors_.cost(arrays_.poses.data());
+}
+
+double BundleAdjuster::moved_cost(bool is_robust) {
+  BundleView moved = view(is_robust);
+  moved.poses = moved_poses_.data();
+  moved.points = moved_points_.data();
+  const double cost = kernels_.cost(moved, nullptr);
+  return factors_.empty() ? cost : cost + factors_.moved_cost(moved_poses_.data());
+}
+
 double BundleAdjuster::minimise(int iterations, bool is_robust, const std::atomic<bool>& stop, BundleSummary& summary) {
-  double cost = kernels_.cost(view(is_robust), nullptr);
+  double cost = current_cost(is_robust);
   for (int i = 0; i < iterations; ++i) {
     if (stop.load(std::memory_order_relaxed)) {
       summary.stopped = true;
       return cost;
     }
     ++summary.iterations;
-    const BundleView current = view(is_robust);
     const double damping = damping_.value();
     double predicted = 0.0, pose_step = 0.0;
-    if (!find_step(current, predicted, pose_step)) {
+    if (!find_step(view(is_robust), predicted, pose_step)) {
       damping_.refuse();
       if (damping_.is_hopeless()) return cost;
       continue;
     }
-    BundleView moved = current;
-    moved.poses = moved_poses_.data();
-    moved.points = moved_points_.data();
-    const double moved_cost = kernels_.cost(moved, nullptr);
-    const double decrease = cost - moved_cost;
+    const double cost_after = moved_cost(is_robust);
+    const double decrease = cost - cost_after;
     const bool accepted = decrease > minimum_gain * predicted && predicted > 0.0;
     if (accepted) {
       arrays_.poses.swap(moved_poses_);
       arrays_.points.swap(moved_points_);
+      factors_.accept();
       damping_.accept(decrease / predicted);
-      cost = moved_cost;
+      cost = cost_after;
     } else {
       damping_.refuse();
       if (damping_.is_hopeless()) return cost;
@@ -139,16 +162,19 @@ bool BundleAdjuster::find_step(const BundleView& view, double& predicted_decreas
   const BundleSystem system{pair_block_.data(), system_.elements(0),  cameras_.data(),
                             couplings_.data(),  eliminations_.data(), scratch_.data()};
   kernels_.eliminate(view, damping_.value(), system);
+  if (!factors_.empty()) factors_.linearise(arrays_.poses.data());
   add_camera_diagonal();
-  if (!system_.solve(right_hand_side_)) return false;
-
   predicted_decrease = 0.0;
   pose_step = 0.0;
+  if (!(factors_.empty() ? system_.solve(right_hand_side_)
+                         : factors_.solve(system_, damping_.value(), right_hand_side_, predicted_decrease)))
+    return false;
   for (std::size_t i = 0; i < arrays_.free_count(); ++i) {
     const double* gradient = cameras_.data() + camera_size * i + block_size;
     const double* step = right_hand_side_.data() + 6 * i;
     for (std::size_t k = 0; k < 6; ++k) {
-      predicted_decrease += 0.5 * (camera_damping_[6 * i + k] * step[k] * step[k] - gradient[k] * step[k]);
+      const double slope = factors_.empty() ? gradient[k] : gradient[k] + factors_.gradient(6 * i + k);
+      predicted_decrease += 0.5 * (camera_damping_[6 * i + k] * step[k] * step[k] - slope * step[k]);
       pose_step = std::max(pose_step, std::abs(step[k]));
     }
     double* repeated = steps_.data() + coupling_size * i;
@@ -166,9 +192,15 @@ void BundleAdjuster::add_camera_diagonal() {
     double* block = system_.elements(system_.block(i, i));
     for (std::size_t k = 0; k < block_size; ++k) block[k] += hessian[k];
     for (std::size_t k = 0; k < 6; ++k) {
-      camera_damping_[6 * i + k] = damping_.value() * std::clamp(hessian[7 * k], 1e-6, 1e32);
+      const auto number = static_cast<Eigen::Index>(6 * i + k);
+      double diagonal = hessian[7 * k];
+      right_hand_side_[number] = -reduced_gradient[k];
+      if (!factors_.empty()) {
+        diagonal += factors_.diagonal(6 * i + k);
+        right_hand_side_[number] -= factors_.gradient(6 * i + k);
+      }
+      camera_damping_[6 * i + k] = damping_.value() * std::clamp(diagonal, 1e-6, 1e32);
       block[7 * k] += camera_damping_[6 * i + k];
-      right_hand_side_[static_cast<Eigen::Index>(6 * i + k)] = -reduced_gradient[k];
     }
   }
 }
@@ -197,6 +229,7 @@ bool BundleAdjuster::write(BundleProblem& problem, BundleSummary& summary) {
   if (!std::all_of(arrays_.poses.begin(), arrays_.poses.end(), finite) ||
       !std::all_of(arrays_.points.begin(), arrays_.points.end(), finite))
     return false;
+  if (!factors_.empty() && !factors_.write(problem)) return false;
   for (std::size_t i = 0; i < arrays_.free_count(); ++i)
     problem.poses[arrays_.pose_indices[i]].T_camera_world =
         geometry::orthonormalised(pose_at(arrays_.poses.data() + pose_size * i));

@@ -7,6 +7,7 @@
 #include "block_system.hpp"
 #include "bundle_arrays.hpp"
 #include "damping.hpp"
+#include "factor_system.hpp"
 #include "holdfast/interfaces/bundle_selection.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
 #include "holdfast/settings/schur.hpp"
@@ -36,6 +37,8 @@ class BundleAdjuster {
   BundleSummary run(BundleProblem& problem, const std::atomic<bool>& stop);
 
  private:
+  /// Takes the factors of the problem, if it has any; false if they cannot be used.
+  bool take_factors(const BundleProblem& problem);
   void build_system();
   /// One phase of at most `iterations`; returns the cost at its end.
   double minimise(int iterations, bool is_robust, const std::atomic<bool>& stop, BundleSummary& summary);
@@ -44,6 +47,9 @@ class BundleAdjuster {
   void add_camera_diagonal();
   void move_poses();
   BundleView view(bool is_robust) const;
+  /// Cost of the observations and factors, at the current state or at that after the step.
+  double current_cost(bool is_robust);
+  double moved_cost(bool is_robust);
   /// The outlier flag of each entry at the current state, with plain squares.
   void find_outliers(const BundleProblem& problem);
   bool write(BundleProblem& problem, BundleSummary& summary);
@@ -53,6 +59,7 @@ class BundleAdjuster {
   BundleSelection selection_;
   BundleArrays arrays_;
   BlockSystem system_;
+  FactorSystem factors_;
   Damping damping_;
   const Camera* camera_ = nullptr;
   double function_tolerance_ = 0.0, step_tolerance_ = 0.0;

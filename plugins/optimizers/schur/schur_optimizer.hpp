@@ -18,6 +18,7 @@ class SchurOptimizer final : public Optimizer {
   SchurOptimizer(const SchurSettings& settings, const CreationContext& context);
 
   PoseSummary optimize_pose(PoseProblem& problem) override;
+  bool supports(FactorKind) const override { return true; }
   BundleSummary optimize_bundle(BundleProblem& problem, const std::atomic<bool>& stop) override;
   GraphSummary optimize_pose_graph(PoseGraphProblem& problem) override;
 

@@ -32,8 +32,11 @@ class FaultyOptimizer final : public Optimizer {
     return summary;
   }
 
+  bool supports(FactorKind kind) const override { return fault_ != "denies_factors" && ceres_->supports(kind); }
+
   BundleSummary optimize_bundle(BundleProblem& problem, const std::atomic<bool>& stop) override {
     const std::atomic<bool> go_on = false;
+    if (fault_ == "ignores_factors") problem.factors.inertial.clear();
     BundleSummary summary = ceres_->optimize_bundle(problem, fault_ == "never_stops" ? go_on : stop);
     if (fault_ == "miscounts") summary.outliers += 1;
     if (fault_ == "moves_fixed" && !problem.poses.empty()) problem.poses[0].T_camera_world.translation().x() += 1e-6;
@@ -56,7 +59,8 @@ class FaultyOptimizer final : public Optimizer {
 void add_optimizers(Registry& registry) {
   add_faults<Optimizer, FaultyOptimizer>(
       registry, {"sound", "ignores_weights", "forgets_inliers", "miscounts", "moves_unusable", "no_number",
-                 "rounds_rotations", "counts_calls", "no_covariance", "never_stops", "moves_fixed", "stays_away"});
+                 "rounds_rotations", "counts_calls", "no_covariance", "never_stops", "moves_fixed", "stays_away",
+                 "denies_factors", "ignores_factors"});
 }
 
 }  // namespace holdfast::bad

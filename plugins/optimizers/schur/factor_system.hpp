@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "block_system.hpp"
+#include "holdfast/interfaces/bundle_factors.hpp"
+
+namespace holdfast::schur_plugin {
+
+/// The part of a bundle adjustment that its factors add to the reduced camera system. With p free poses, m free motions
+/// and the world, the system after the elimination of the points is
+///
+///     [ S + F_pp   F_pm   F_pw ]  6 p
+///     [   .        F_mm   F_mw ]  9 m
+///     [   .          .    F_ww ]  up to 3
+///
+/// where S is the visual part (BlockSystem) and F the Gauss-Newton Hessian of the factors: a pose with its motion is a
+/// block of 15. Solved by a sparse Cholesky factorisation with a fill-reducing order, since motions are coupled in
+/// chains.
+class FactorSystem {
+ public:
+  /// Takes the factors of a problem; `free_poses` are the indices of the free poses in the order of the system.
+  /// Returns whether the factors' numbers can be used. `poses`: T_camera_world of all poses as in BundleArrays.
+  bool begin(const BundleProblem& problem, std::span<const std::uint32_t> free_poses);
+  /// Releases the problem.
+  void end() { evaluation_.reset(); }
+  bool empty() const { return !evaluation_ || evaluation_->factors().empty(); }
+
+  /// Cost of the factors, with the given free poses, at the current motions or at those after the step.
+  double cost(const double* poses);
+  double moved_cost(const double* poses);
+  /// Makes the states after the step the current ones.
+  void accept() { std::swap(states_, moved_states_); }
+
+  /// Linearises the factors at the current states.
+  void linearise(const double* poses);
+  /// Of a free pose, the diagonal of the factors' Hessian.
+  double diagonal(std::size_t number) const { return diagonal_[static_cast<Eigen::Index>(number)]; }
+  double gradient(std::size_t number) const { return gradient_[static_cast<Eigen::Index>(number)]; }
+  /// Solves the system, of which `visual` is the part of the poses with their damping. In: the right-hand side of the
+  /// poses; out: their steps. Sets the states after the step, and adds the decrease that the linearisation predicts of
+  /// motions and world. False if there is no solution.
+  bool solve(BlockSystem& visual, double damping, Eigen::VectorXd& steps, double& predicted_decrease);
+  /// Writes the current motions and world to the problem; false if they are not finite.
+  bool write(BundleProblem& problem) const;
+
+ private:
+  /// Columns of the states of a factor in the system, and derivatives by them.
+  struct Columns {
+    int count = 0;
+    std::array<int, 33> column;
+    Eigen::Matrix<double, 15, 33> derivative;
+  };
+  void take_poses(const double* poses, FactorEvaluation::States& states) const;
+  Columns columns_of(const FactorEvaluation::Factor& factor, const FactorError& error) const;
+  void move_states(const Eigen::VectorXd& steps);
+
+  std::optional<FactorEvaluation> evaluation_;
+  FactorEvaluation::States states_, moved_states_;
+  std::vector<std::uint32_t> free_poses_;
+  std::vector<int> column_of_pose_, column_of_motion_;  // -1 = fixed
+  std::array<int, 3> column_of_world_{-1, -1, -1};
+  int size_ = 0;
+  std::vector<Eigen::Triplet<double>> factor_entries_, entries_;
+  Eigen::VectorXd diagonal_, gradient_;
+  Eigen::SparseMatrix<double> matrix_;
+  bool analyzed_ = false;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factorisation_;
+};
+
+}  // namespace holdfast::schur_plugin

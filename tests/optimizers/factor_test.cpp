@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Factors of bundle problems: derivatives against differences, `schur` against the reference `ceres`.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "both_optimizers.hpp"
+#include "ceres/factor_cost.hpp"
+#include "geometry/synthetic.hpp"
+#include "inertial_problem.hpp"
+
+namespace holdfast {
+namespace {
+
+using conformance::KnownInertial;
+
+const std::atomic<bool> go_on = false;
+const Camera camera = synthetic::camera();
+
+geometry::Matrix6d some_information(Random& random) {
+  geometry::Matrix6d root;
+  for (int i = 0; i < 36; ++i) root(i / 6, i % 6) = random.normal();
+  return root.transpose() * root + geometry::Matrix6d::Identity();
+}
+
+/// Inertial factors, a relative pose and priors, all with residuals far from zero.
+BundleProblem problem_of_all_kinds(std::uint64_t seed) {
+  Random random(seed);
+  BundleProblem problem = conformance::known_inertial(camera, seed, 1.3).problem;
+  BundleFactors& factors = problem.factors;
+  factors.scale_fixed = false;
+  for (BundleProblem::Pose& pose : problem.poses)
+    pose.T_camera_world = geometry::exp_se3(synthetic::tangent(random, 0.2, 0.3)) * pose.T_camera_world;
+  factors.relative_poses.push_back(
+      {2, 5, geometry::exp_se3(synthetic::tangent(random, 0.5, 0.5)), some_information(random)});
+  factors.pose_priors.push_back({6, geometry::exp_se3(synthetic::tangent(random, 0.5, 0.5)), some_information(random)});
+  BundleFactors::MotionPrior prior{.motion = 4, .velocity = {0.1, 0.2, 0.3}, .bias = {}};
+  prior.information.diagonal().setLinSpaced(0.0, 4.0);  // the first number is unknown
+  factors.motion_priors.push_back(prior);
+  return problem;
+}
+
+using Column = Eigen::Matrix<double, 15, 1>;
+
+/// Numeric derivative of the residual by the number that `change` adds to.
+Column difference(const FactorEvaluation& evaluation, const FactorEvaluation::Factor& factor,
+                  const FactorEvaluation::States& states,
+                  const std::function<void(FactorEvaluation::States&, double)>& change) {
+  constexpr double h = 1e-6;
+  FactorError plus, minus;
+  FactorEvaluation::States moved = states;
+  change(moved, h);
+  evaluation.evaluate(factor, moved, false, plus);
+  moved = states;
+  change(moved, -h);
+  evaluation.evaluate(factor, moved, false, minus);
+  Column result = Column::Zero();
+  result.head(factor.rows) = (plus.residual - minus.residual).head(factor.rows) / (2 * h);
+  return result;
+}
+
+void expect_near(const Eigen::Ref<const Eigen::MatrixXd>& analytic, const Column& numeric, int rows,
+                 const std::string& what) {
+  const double size = 1.0 + numeric.head(rows).norm();
+  EXPECT_LT((analytic.topRows(rows) - numeric.head(rows)).norm(), 1e-5 * size) << what;
+}
+
+TEST(FactorEvaluation, DerivativesAgreeWithDifferences) {
+  const BundleProblem problem = problem_of_all_kinds(1);
+  const FactorEvaluation evaluation(problem);
+  FactorEvaluation::States states = evaluation.states();
+  states.world = Eigen::Vector3d(0.1, -0.2, 0.15);  // away from where the tangents were chosen
+  ASSERT_TRUE(evaluation.is_finite());
+  ASSERT_EQ(evaluation.factors().size(), problem.factors.inertial.size() + 3);
+  for (const FactorEvaluation::Factor& factor : evaluation.factors()) {
+    const std::string what = "kind " + std::to_string(static_cast<int>(factor.kind));
+    FactorError error;
+    evaluation.evaluate(factor, states, true, error);
+    for (std::size_t i = 0; i < 2; ++i) {
+      for (int k = 0; k < 6 && factor.poses[i] != FactorEvaluation::none; ++k) {
+        const auto change = [&](FactorEvaluation::States& moved, double h) {
+          Eigen::Isometry3d& pose = moved.poses[factor.poses[i]];
+          pose = geometry::exp_se3(h * geometry::Vector6d::Unit(k)) * pose;
+        };
+        expect_near(error.by_pose[i].col(k), difference(evaluation, factor, states, change), factor.rows,
+                    what + " pose " + std::to_string(k));
+      }
+      for (int k = 0; k < 9 && factor.motions[i] != FactorEvaluation::none; ++k) {
+        const auto change = [&](FactorEvaluation::States& moved, double h) {
+          moved.motions[factor.motions[i]][k] += h;
+        };
+        expect_near(error.by_motion[i].col(k), difference(evaluation, factor, states, change), factor.rows,
+                    what + " motion " + std::to_string(k));
+      }
+    }
+    for (int k = 0; k < 3 && factor.has_world; ++k) {
+      const auto change = [&](FactorEvaluation::States& moved, double h) { moved.world[k] += h; };
+      expect_near(error.by_world.col(k), difference(evaluation, factor, states, change), factor.rows,
+                  what + " world " + std::to_string(k));
+    }
+  }
+}
+
+/// The cost is that of the information, half its squared Mahalanobis distance.
+TEST(FactorEvaluation, WhitensByTheInformation) {
+  BundleProblem problem = problem_of_all_kinds(2);
+  BundleFactors factors;
+  factors.pose_priors = problem.factors.pose_priors;
+  problem.factors = factors;
+  const FactorEvaluation evaluation(problem);
+  const BundleFactors::PosePrior& prior = factors.pose_priors.front();
+  const geometry::Vector6d residual =
+      geometry::log_se3(problem.poses[prior.pose].T_camera_world * prior.T_camera_world.inverse());
+  const double expected = 0.5 * residual.dot(prior.information * residual);
+  EXPECT_NEAR(evaluation.cost(evaluation.states()), expected, 1e-9 * expected);
+}
+
+/// Ceres moves translation and rotation vector of a pose instead of a left perturbation.
+TEST(FactorCost, JacobiansOfTheSolversParametersAgreeWithDifferences) {
+  const BundleProblem problem = problem_of_all_kinds(3);
+  const FactorEvaluation evaluation(problem);
+  std::vector<ceres_plugin::PoseState> poses(problem.poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) poses[i].set(problem.poses[i].T_camera_world);
+  for (ceres_plugin::PoseState& pose : poses) {
+    const double moved[6] = {0.1, -0.2, 0.3, 0.4, -0.3, 0.2};
+    for (int k = 0; k < 6; ++k) pose.parameters[k] += moved[k];
+    pose.update();
+  }
+  ceres_plugin::FactorParameters parameters;
+  parameters.states = evaluation.states();
+  parameters.motions = parameters.states.motions;
+  parameters.update(poses);
+  const FactorEvaluation::Factor& factor = evaluation.factors()[2];
+  const ceres_plugin::FactorCost cost(evaluation, factor, parameters.states, poses, {true, false, false, true, false});
+  ASSERT_EQ(cost.parameter_block_sizes(), (std::vector<int>{6, 9}));
+  Eigen::Matrix<double, 15, 6, Eigen::RowMajor> by_pose;
+  Eigen::Matrix<double, 15, 9, Eigen::RowMajor> by_motion;
+  double* jacobians[2] = {by_pose.data(), by_motion.data()};
+  Column residual, plus, minus;
+  ASSERT_TRUE(cost.Evaluate(nullptr, residual.data(), jacobians));
+  const auto numeric = [&](double& number) {
+    constexpr double h = 1e-6;
+    const double before = number;
+    const auto evaluate = [&](double value, Column& into) {
+      number = value;
+      poses[factor.poses[0]].update();
+      parameters.update(poses);
+      cost.Evaluate(nullptr, into.data(), nullptr);
+    };
+    evaluate(before + h, plus), evaluate(before - h, minus), evaluate(before, residual);
+    return Column((plus - minus) / (2 * h));
+  };
+  for (int k = 0; k < 6; ++k)
+    expect_near(by_pose.col(k), numeric(poses[factor.poses[0]].parameters[k]), 15, "pose " + std::to_string(k));
+  for (int k = 0; k < 9; ++k)
+    expect_near(by_motion.col(k), numeric(parameters.motions[factor.motions[1]][k]), 15, "motion " + std::to_string(k));
+}
+
+/// Measurements with noise, which leave residuals in every factor.
+BundleProblem noisy_problem(std::uint64_t seed, bool with_scale) {
+  Random random(seed);
+  BundleProblem problem = conformance::known_inertial(camera, seed, with_scale ? 1.5 : 1.0).problem;
+  problem.factors.scale_fixed = !with_scale;
+  for (BundleProblem::Observation& observation : problem.observations) {
+    observation.x += static_cast<float>(random.normal());
+    observation.y += static_cast<float>(random.normal());
+    observation.right_x += static_cast<float>(random.normal());
+    if (random.uniform() < 0.03) observation.x += 40.0F;
+  }
+  problem.factors.relative_poses.push_back(
+      {1, 6,
+       geometry::exp_se3(synthetic::tangent(random, 0.01, 0.01)) * problem.poses[6].T_camera_world *
+           problem.poses[1].T_camera_world.inverse(),
+       1e4 * geometry::Matrix6d::Identity()});
+  problem.factors.motion_priors.push_back({.motion = 0, .bias = {}});
+  return problem;
+}
+
+void expect_agreement(BundleProblem problem, const std::string& what, std::int64_t dense_poses = 60) {
+  problem.robust_iterations = problem.final_iterations = 200;
+  problem.function_tolerance = 1e-14;
+  BundleProblem reference = problem;
+  const BundleSummary expected = make_optimizer("ceres")->optimize_bundle(reference, go_on);
+  const BundleSummary found = make_optimizer("schur", {{"dense_poses", dense_poses}})->optimize_bundle(problem, go_on);
+  ASSERT_TRUE(expected.usable && found.usable) << what;
+  EXPECT_NEAR(found.initial_cost, expected.initial_cost, 1e-9 * expected.initial_cost) << what;
+  EXPECT_NEAR(found.final_cost, expected.final_cost, 1e-6 * expected.final_cost) << what;
+  EXPECT_EQ(found.outliers, expected.outliers) << what;
+  for (std::size_t i = 0; i < problem.poses.size(); ++i)
+    EXPECT_LT(synthetic::distance(problem.poses[i].T_camera_world, reference.poses[i].T_camera_world), 1e-5)
+        << what << ", pose " << i;
+  for (std::size_t i = 0; i < problem.factors.motions.size(); ++i) {
+    const auto &is = problem.factors.motions[i], &should_be = reference.factors.motions[i];
+    EXPECT_LT((is.velocity - should_be.velocity).norm(), 1e-5) << what << ", velocity " << i;
+    EXPECT_LT((is.bias.accelerometer - should_be.bias.accelerometer).norm(), 1e-4) << what << ", bias " << i;
+  }
+  EXPECT_LT((problem.factors.gravity - reference.factors.gravity).norm(), 1e-4) << what;
+  EXPECT_NEAR(problem.factors.scale, reference.factors.scale, 1e-5) << what;
+}
+
+TEST(SchurAgreesWithCeres, OnInertialProblems) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) expect_agreement(noisy_problem(seed, false), "known scale");
+  expect_agreement(noisy_problem(4, true), "free scale");
+  expect_agreement(noisy_problem(5, false), "sparse visual part", 0);
+}
+
+TEST(SchurAgreesWithCeres, WithFixedMotionsAndFixedGravity) {
+  BundleProblem problem = noisy_problem(6, false);
+  problem.factors.gravity_fixed = true;
+  problem.factors.motions[2].fixed = problem.poses[5].fixed = true;
+  expect_agreement(problem, "fixed states");
+}
+
+TEST(SchurAgreesWithCeres, WithoutObservations) {
+  BundleProblem problem = noisy_problem(7, false);
+  problem.observations.clear();
+  problem.factors.pose_priors.push_back({.pose = 7, .T_camera_world = problem.poses[7].T_camera_world});
+  expect_agreement(problem, "factors alone");
+}
+
+/// What factors cost a visual problem: nothing, to the last bit.
+TEST(Factors, ThatLeaveEverythingFixedChangeNoBit) {
+  for (const char* name : {"ceres", "schur"}) {
+    BundleProblem plain = synthetic::bundle_case(camera, 4, 6, 300, 8, 1.0, 0.05, 8).problem, with_factors = plain;
+    for (std::uint32_t i = 0; i < plain.poses.size(); ++i)
+      with_factors.factors.motions.push_back({.pose = i, .bias = {}});
+    make_optimizer(name)->optimize_bundle(plain, go_on);
+    make_optimizer(name)->optimize_bundle(with_factors, go_on);
+    for (std::size_t i = 0; i < plain.poses.size(); ++i)
+      EXPECT_EQ(plain.poses[i].T_camera_world.matrix(), with_factors.poses[i].T_camera_world.matrix()) << name << i;
+  }
+}
+
+}  // namespace
+}  // namespace holdfast
