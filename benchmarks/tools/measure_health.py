@@ -3,7 +3,7 @@
 """Measure the health of poses against the truth: NEES of covariances, errors that were announced, false alarms.
 
     holdfast run CONFIG --output RUN --set observers='[health]' ...     for each recording, simulated for instance
-    measure_health.py RUN [RUN ...]
+    measure_health.py [--truth groundtruth.txt] RUN [RUN ...]
 
 NEES is that of the pose relative to the reference keyframe, as FrameResult::covariance means it, of frames whose pose the
 map determined. The relative poses of trajectory.txt are those of the time of each frame. An error begins where a
@@ -11,6 +11,10 @@ reported pose is more than 5 cm off the truth (poses aligned at the first frame)
 if a frame of the second until then is not good. A false alarm is a frame with a pose that is not good although no pose
 of the following two seconds is 5 cm off. Those within a second of a frame without a pose are also counted apart: that the
 camera was, or is about to be, lost is no false word.
+
+With --truth, the truth is that of a recording in TUM layout: the nearest stamp within 0.01 s counts, and all poses are
+aligned by least squares in place of the first, because a measured pose is not exact. There is no NEES then: the errors of
+such a truth, some millimetres, are larger than the standard deviations that it is to judge.
 
 Needs: Debian's python3-numpy.
 """
@@ -46,7 +50,33 @@ def tangent(T):
     return np.r_[T[:3, 3] - np.cross(r, T[:3, 3]) / 2, r]
 
 
-def read(folder):
+def read_truth(path):
+    """Stamps and poses of a trajectory in TUM format."""
+    rows = [line.split() for line in open(path) if line.strip() and not line.startswith("#")]
+    return np.array([float(row[0]) for row in rows]), [pose(row[1:8]) for row in rows]
+
+
+def add_truth(frames, truth):
+    stamps, poses = truth
+    for frame in frames:
+        nearest = np.abs(stamps - float(frame["timestamp"])).argmin()
+        frame["truth"] = poses[nearest] if abs(stamps[nearest] - float(frame["timestamp"])) <= 0.01 else None
+
+
+def alignment(frames, by_all):
+    """The motion that takes estimated poses to true ones: of the first pose, or of all positions (Horn 1987)."""
+    both = [f for f in frames if f["pose"] is not None and f["truth"] is not None]
+    if not by_all:
+        return both[0]["truth"] @ inverse(both[0]["pose"])
+    a, b = (np.array([f[name][:3, 3] for f in both]) for name in ("pose", "truth"))
+    U, _, V = np.linalg.svd((b - b.mean(0)).T @ (a - a.mean(0)))
+    T = np.eye(4)
+    T[:3, :3] = U @ np.diag([1, 1, np.linalg.det(U @ V)]) @ V
+    T[:3, 3] = b.mean(0) - T[:3, :3] @ a.mean(0)
+    return T
+
+
+def read(folder, truth=None):
     with open(os.path.join(folder, "health.csv")) as file:
         frames = list(csv.DictReader(file))
     final = {}
@@ -59,6 +89,8 @@ def read(folder):
         frame["stamp"] = round(float(frame["timestamp"]), 5)
         frame["pose"] = pose([frame[n] for n in names]) if frame["x"] else None
         frame["truth"] = pose([frame["true_" + n] for n in names]) if frame["true_x"] else None
+    if truth is not None:
+        add_truth(frames, truth)
     if not any(frame["truth"] is not None for frame in frames):
         sys.exit(folder + ": health.csv has no true poses; the source must have them, and the observer writes them with "
                  "truth: true")
@@ -73,7 +105,8 @@ def nees_of(frames, final):
         if not f["c00"] or not f["reference"] or f["stamp"] not in final or "fallback" in f["reasons"]:
             continue
         reference = round(float(f["reference"]), 5)
-        if reference not in final or reference == f["stamp"] or f["state"] == "inertial":
+        if reference not in final or reference == f["stamp"] or f["state"] == "inertial" or f["truth"] is None \
+                or truth.get(reference) is None:
             continue
         C = np.zeros((6, 6))
         for i in range(6):
@@ -91,13 +124,12 @@ def chi_square_quantile(share, degrees):
     return degrees * (1 - 2 / (9 * degrees) + z * np.sqrt(2 / (9 * degrees))) ** 3
 
 
-def alarms_of(frames):
+def alarms_of(frames, by_all=False):
     """Numbers of errors, announced errors, false alarms, those near a loss, frames; the errors that were not announced."""
-    first = next(f for f in frames if f["pose"] is not None)
-    T = first["truth"] @ inverse(first["pose"])
+    T = alignment(frames, by_all)
     times = np.array([f["stamp"] for f in frames])
-    big = np.array([f["pose"] is not None and np.linalg.norm((T @ f["pose"])[:3, 3] - f["truth"][:3, 3]) > BIG
-                    for f in frames])
+    big = np.array([f["pose"] is not None and f["truth"] is not None
+                    and np.linalg.norm((T @ f["pose"])[:3, 3] - f["truth"][:3, 3]) > BIG for f in frames])
     not_good = np.array([f["state"] not in ("good", "waiting") for f in frames])
     errors, announced, missed, last = 0, 0, [], -np.inf
     for i in np.flatnonzero(big):
@@ -116,20 +148,25 @@ def alarms_of(frames):
 
 
 def main(folders):
+    truth = None
+    if folders[0] == "--truth":
+        truth, folders = read_truth(folders[1]), folders[2:]
     by_frame, everything, totals = {}, [], np.zeros(5, int)
     print("%-32s %6s %8s %8s   %s" % ("recording", "NEES", "errors", "announced", "false alarms"))
     for folder in folders:
-        frames, final = read(folder)
-        nees = nees_of(frames, final)
+        frames, final = read(folder, truth)
+        nees = nees_of(frames, final) if truth is None else {}
         for number, value in nees.items():
             by_frame.setdefault(number, []).append(value)
             everything.append(value)
-        *counts, missed = alarms_of(frames)
+        *counts, missed = alarms_of(frames, truth is not None)
         totals += counts
-        print("%-32s %6.2f %8d %8d   %d (%d near a loss) of %d%s" % (os.path.basename(os.path.normpath(folder)), np.mean(list(nees.values())),
-              *counts, "".join(", missed at %.2f s" % m for m in missed)))
+        mean = np.mean(list(nees.values())) if nees else np.nan
+        print("%-32s %6.2f %8d %8d   %d (%d near a loss) of %d%s" % (os.path.basename(os.path.normpath(folder)), mean, *counts, "".join(", missed at %.2f s" % m for m in missed)))
+    print("errors above 5 cm: %d, announced %d; false alarms %.2f %% of %d frames, without those near a loss %.2f %%"
+          % (totals[0], totals[1], 100 * totals[2] / totals[4], totals[4], 100 * (totals[2] - totals[3]) / totals[4]))
     if not everything:
-        sys.exit("no frame has a covariance and a reference keyframe")
+        sys.exit(0 if truth is not None else "no frame has a covariance and a reference keyframe")
     everything = np.array(everything)
     inside, full = 0, [v for v in by_frame.values() if len(v) >= max(2, len(folders) // 2)]
     for values in full:
@@ -142,11 +179,9 @@ def main(folders):
     if full:
         print("mean over recordings of the same frame number: %.1f %% inside the band (expected 95)"
               % (100 * inside / len(full)))
-    print("errors above 5 cm: %d, announced %d; false alarms %.2f %% of %d frames, without those near a loss %.2f %%"
-          % (totals[0], totals[1], 100 * totals[2] / totals[4], totals[4], 100 * (totals[2] - totals[3]) / totals[4]))
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 2:
+    if len(sys.argv) < (4 if "--truth" in sys.argv else 2):
         sys.exit(__doc__)
     main(sys.argv[1:])

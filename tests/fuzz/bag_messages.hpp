@@ -34,6 +34,10 @@ inline void read_message(const rosbag_plugin::Message& message) {
     require(camera.fx > 0.0 && camera.fy > 0.0 && camera.width > 0 && camera.height > 0, "a camera has an area");
     require(camera.distortion.trouble().empty(), "the coefficients fit the lens");
   });
+  accepts([&] {
+    const double baseline = read_right_camera_info(message).baseline;
+    require(baseline > 0.0 && std::isfinite(baseline), "the right camera is on the right");
+  });
 }
 
 /// Reads all messages of a recording, and chooses topics as the source does.

@@ -55,8 +55,11 @@ Json heard_by_npm(const test::NpmTools& tools, const char* protocol) {
   auto heard = std::async(std::launch::async, [&] {
     return tools.run("node '" HOLDFAST_TEST_LISTENER "' '" + address + "' " + protocol, output);
   });
-  for (std::uint64_t i = 0; i < 3; ++i) feed(*live, i);
   Map map;
+  Frame first;
+  first.timestamp = 1.5;
+  live->on_keyframe(map.add_keyframe(std::move(first)), ObservedMap([&] { return make_snapshot(map); }));
+  for (std::uint64_t i = 0; i < 3; ++i) feed(*live, i);
   map.add_point(Eigen::Vector3d(1, 2, 3), 0);
   live->on_finish(map);
   live.reset();
@@ -89,7 +92,8 @@ TEST(FoxgloveTest, TheClientOfFoxgloveGetsARun) {
     EXPECT_EQ(heard["end"], 1001) << "the server goes away, after all messages";
     EXPECT_EQ(topics["/camera/pose"]["last"]["pose"]["position"]["z"], 2.0);
     EXPECT_EQ(topics["/camera/image"]["last"]["format"], "jpeg");
-    EXPECT_EQ(topics["/map/points"]["count"], 1);
+    EXPECT_EQ(topics["/map/points"]["count"], 2);
+    EXPECT_EQ(topics["/map/keyframes"]["first"], "1500000000") << "before the first frame was shown";
     EXPECT_EQ(topics["/map/points"]["last"]["data"], "AACAPwAAAEAAAEBA");  // 1, 2, 3 as float32
   }
 }

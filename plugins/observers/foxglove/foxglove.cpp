@@ -98,8 +98,8 @@ class Foxglove final : public Observer {
   }
 
   void on_keyframe(KeyFrameId, const ObservedMap& map) override {
-    const double time = last_time();
-    if (time < map_time_ + settings_.map_interval) return;
+    const double time = map_time_ ? last_time() : first_time(map.snapshot());
+    if (map_time_ && time < *map_time_ + settings_.map_interval) return;
     map_time_ = time;
     messages_.add_map(map.snapshot(), time);
   }
@@ -111,6 +111,10 @@ class Foxglove final : public Observer {
   double last_time() const {
     const std::lock_guard lock(mutex_);
     return messages_.time();
+  }
+  /// That of the newest keyframe: the first one is processed before its frame is shown.
+  static double first_time(const MapSnapshot& map) {
+    return map.keyframes.empty() ? 0.0 : map.keyframes.back().timestamp;
   }
   /// Until there is a subscription, and for 0.2 s no further one: clients send one request for each topic. Or until the
   /// run is interrupted, or this thread handles a signal, which ends a sleep.
@@ -129,7 +133,7 @@ class Foxglove final : public Observer {
   LiveChannels channels_;
   mutable std::mutex mutex_;  // of messages_, but for add_map()
   mcap::RunMessages messages_;
-  double map_time_ = -1e300;  // of the last map [s]; used by the mapping thread
+  std::optional<double> map_time_;  // of the last map [s]; used by the mapping thread
   bool has_waited_ = false;
   std::atomic<bool> is_interrupted_ = false;
   LiveClients clients_;
