@@ -6,6 +6,7 @@
 
 #include "holdfast/map_io/map_export.hpp"
 #include "holdfast/matching/frame_features.hpp"
+#include "holdfast/surface/surface_alignment.hpp"
 
 namespace holdfast {
 
@@ -31,6 +32,8 @@ KeyframeFlow::KeyframeFlow(PipelineParts& parts, GuardedMap& map, MovingWorld& m
   if (parts.surface.enabled && scene_) surface_.emplace(scene_->camera(), parts.surface);
   if (surface_ && parts.surface.carving_interval > 0.0)
     carving_.emplace(parts.surface.carving_interval, CarvingViews::per_keyframe * parts.dense_map.keyframes);
+  if (surface_ && parts.surface.interval > 0.0)
+    fused_frames_.emplace(scene_->sampler(), parts.surface.interval, parts.dense_map.keyframes);
   if (surface_ && parts.surface.resting_time > 0.0) resting_.emplace(parts.surface.resting_time);
   const std::vector<std::string>& out = parts.dense_map.classes;
   for (const std::string& name : parts.segmenter->classes())
@@ -124,7 +127,7 @@ void KeyframeFlow::request_mask(const SensorFrame& sensor_frame, const Frame& fr
                                 const FrameResult& result, StageTimes& times) {
   const KeyFrameId keyframe = result.is_keyframe ? result.keyframe : KeyFrameId();
   const bool is_requested = moving_world_.request_mask(sensor_frame, keyframe, times, is_needed);
-  keep_carving_view(frame, result);
+  keep_for_surface(sensor_frame, frame, result);
   if (!result.is_keyframe) return;
   if (is_requested) {
     // One camera makes all its points by triangulation, and would be lost before the mask arrives: a propagated mask
@@ -148,6 +151,7 @@ void KeyframeFlow::remove_map(const std::function<void(const LockedMap&)>& forge
     map->remove_all();
     if (scene_) scene_->forget_removed(map.map());
     if (carving_) carving_->forget_removed(map.map());
+    if (fused_frames_) fused_frames_->forget_removed(map.map());
     if (resting_) resting_->clear();
     mapper_.forget_map();
     forget(map);
@@ -165,6 +169,7 @@ void KeyframeFlow::keep_submap(const LockedMap& map, std::uint32_t submap) {
   map->keep_submap(submap);
   if (scene_) scene_->forget_removed(map.map());
   if (carving_) carving_->forget_removed(map.map());
+  if (fused_frames_) fused_frames_->forget_removed(map.map());
 }
 
 void KeyframeFlow::hand_to_mapping(const MappingJob& job, StageTimes& times) {
@@ -271,24 +276,34 @@ const KeptView* KeyframeFlow::keep_view(KeyFrameId keyframe, const SensorFrame& 
   return &scene_->add(keyframe, frame, released, labels, left_out_);
 }
 
-void KeyframeFlow::keep_carving_view(const Frame& frame, const FrameResult& result) {
+void KeyframeFlow::keep_for_surface(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result) {
   if (resting_) resting_->add(frame, result);
-  if (!carving_) return;
-  if (result.is_keyframe) return carving_->keyframe_kept(frame.timestamp);
+  if (result.is_keyframe) {
+    if (carving_) carving_->keyframe_kept(frame.timestamp);
+    if (fused_frames_) fused_frames_->keyframe_kept(frame.timestamp);
+    return;
+  }
   if (result.status != TrackingStatus::tracked || result.fallback != TrackingFallback::none) return;
-  if (!carving_->is_due(frame.timestamp)) return;
+  const bool is_fused = fused_frames_ && fused_frames_->is_due(frame.timestamp);
+  if (!is_fused && !(carving_ && carving_->is_due(frame.timestamp))) return;
   const LockedMap map(map_, LockPriority::tracking);
   if (!map->submap_of(result.keyframe)) return;
-  carving_->add(frame, result.keyframe, map->pose_of(result.keyframe));
+  const Eigen::Isometry3d T_keyframe_world = map->pose_of(result.keyframe);
+  if (!is_fused) return carving_->add(frame, result.keyframe, T_keyframe_world);
+  fused_frames_->add(sensor_frame, frame, result.keyframe, T_keyframe_world, left_out_);
+  if (carving_) carving_->keyframe_kept(frame.timestamp);
 }
 
 std::vector<KeptView> KeyframeFlow::views_of_surface() const {
-  const std::vector<KeptView>& kept = scene_->views();
-  if (!carving_) return kept;
-  std::vector<KeptView> views;
-  views.reserve(kept.size() + carving_->views().size());
-  std::merge(kept.begin(), kept.end(), carving_->views().begin(), carving_->views().end(), std::back_inserter(views),
-             [](const KeptView& a, const KeptView& b) { return a.frame_index < b.frame_index; });
+  std::vector<KeptView> views = scene_->views();
+  const auto add = [&](const std::vector<KeptView>& more) {
+    const auto middle = static_cast<std::ptrdiff_t>(views.size());
+    views.insert(views.end(), more.begin(), more.end());
+    std::inplace_merge(views.begin(), views.begin() + middle, views.end(),
+                       [](const KeptView& a, const KeptView& b) { return a.frame_index < b.frame_index; });
+  };
+  if (carving_) add(carving_->views());
+  if (fused_frames_) add(fused_frames_->views());
   return views;
 }
 
@@ -335,6 +350,23 @@ std::shared_ptr<const FreeSpace> KeyframeFlow::free_space() const {
   if (!free_space_)
     free_space_ = std::make_shared<const FreeSpace>(*surface_, surface_->field().mesh(), parts_.surface.cell);
   return free_space_;
+}
+
+std::optional<Eigen::Isometry3d> KeyframeFlow::align_with_surface(const Frame& frame,
+                                                                  const Eigen::Isometry3d& predicted,
+                                                                  StageTimes& times) const {
+  if (!surface_) return std::nullopt;
+  const StageTimer timer(times, "surface alignment");
+  // While a thread fuses, other methods give the pose sooner.
+  if (!is_threaded())
+    surface_mutex_.lock();
+  else if (!surface_mutex_.try_lock())
+    return std::nullopt;
+  const auto T_view_world = holdfast::align_with_surface(surface_->field(), frame.coarse, *frame.camera,
+                                                         frame.coarse.T_view_world(predicted));
+  surface_mutex_.unlock();
+  if (!T_view_world) return std::nullopt;
+  return frame.coarse.T_view_camera.inverse() * *T_view_world;
 }
 
 bool KeyframeFlow::with_surface(const std::function<void(const SurfaceMap&)>& look) const {

@@ -18,6 +18,7 @@
 #include "holdfast/pipeline/pipeline.hpp"
 #include "holdfast/surface/carving_views.hpp"
 #include "holdfast/surface/free_space.hpp"
+#include "holdfast/surface/fused_frames.hpp"
 #include "holdfast/surface/resting_cells.hpp"
 #include "holdfast/surface/surface_map.hpp"
 #include "holdfast/tracking/mono_initialiser.hpp"
@@ -97,6 +98,10 @@ class KeyframeFlow {
   const SurfaceMap* surface() const { return surface_ ? &*surface_ : nullptr; }
   /// See Pipeline::free_space().
   std::shared_ptr<const FreeSpace> free_space() const HOLDFAST_EXCLUDES(surface_mutex_);
+  /// T_camera_world of a frame by the surface as fused so far, from its predicted value; empty if its depth does not
+  /// determine it, and in threaded mode while another thread uses the surface.
+  std::optional<Eigen::Isometry3d> align_with_surface(const Frame& frame, const Eigen::Isometry3d& predicted,
+                                                      StageTimes& times) const HOLDFAST_EXCLUDES(surface_mutex_);
   /// See Pipeline::with_surface().
   bool with_surface(const std::function<void(const SurfaceMap&)>& look) const HOLDFAST_EXCLUDES(surface_mutex_);
   /// A copy of the map, from any thread.
@@ -141,8 +146,9 @@ class KeyframeFlow {
   /// nullptr without a dense map; valid until the next call.
   const KeptView* keep_view(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse,
                             const cv::Mat& labels, StageTimes& times);
-  /// Keeps the coarse depth of a frame between keyframes if the surface is to be carved by it.
-  void keep_carving_view(const Frame& frame, const FrameResult& result) HOLDFAST_EXCLUDES(map_);
+  /// Keeps a frame between keyframes if the surface is to be fused from it, or carved by its coarse depth.
+  void keep_for_surface(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result)
+      HOLDFAST_EXCLUDES(map_);
   /// What the surface is made of: kept views and those that only carve, by increasing frame index.
   std::vector<KeptView> views_of_surface() const;
   /// Adds a kept view to the surface, if there are both.
@@ -169,6 +175,7 @@ class KeyframeFlow {
   FullAdjustment adjustment_;
   std::optional<StaticScene> scene_;
   std::optional<CarvingViews> carving_;
+  std::optional<FusedFrames> fused_frames_;
   std::optional<RestingCells> resting_;
   mutable Mutex surface_mutex_;
   std::optional<SurfaceMap> surface_;  // changes with the mutex held

@@ -113,8 +113,10 @@ struct Pipeline::State {
         detector(*parts.loop_detector),
         calibration(calibration_of_pair(parts)),
         depth(depth_provider(parts, calibration.get())),
-        tracker(parts.tracking, {parts.camera, *parts.features, *depth, *parts.optimizer, detector, moving_world,
-                                 map.unshared(), parts.run.seed, *parts.matcher, parts.imu}),
+        tracker(parts.tracking,
+                {parts.camera, *parts.features, *depth, *parts.optimizer, detector, moving_world, map.unshared(),
+                 parts.run.seed, *parts.matcher, parts.imu},
+                default_first_poses(surface_poses())),
         flow(parts, map, moving_world, detector) {
     Map& whole = map.unshared();
     whole.set_sensor(parts.sensor);
@@ -129,6 +131,13 @@ struct Pipeline::State {
       flow.start_threads();
   }
 
+  /// The method of `surface.poses`; none without it.
+  DepthAlignment surface_poses() {
+    if (!parts.surface.enabled || !parts.surface.poses) return {};
+    return [this](const Frame& frame, const Eigen::Isometry3d& predicted, StageTimes& times) {
+      return flow.align_with_surface(frame, predicted, times);
+    };
+  }
   bool keeps_classes() const { return !parts.segmenter->classes().empty() && !parts.localise_only; }
   /// Throws InputError for a frame that cannot be processed; it leaves no trace: the next one may have its stamp.
   void accept(const SensorFrame& frame);

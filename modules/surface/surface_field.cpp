@@ -10,6 +10,7 @@
 #include "marching_cubes.hpp"
 #include "patches.hpp"
 #include "remnants.hpp"
+#include "sampling.hpp"
 #include "view_image.hpp"
 
 namespace holdfast {
@@ -120,6 +121,10 @@ std::uint64_t SurfaceField::version() const { return parts_->blocks.version(); }
 
 std::vector<SurfacePatch> SurfaceField::changes(std::uint64_t since, int coarseness) const {
   return surface::changed_patches(parts_->blocks, parts_->settings, since, coarseness);
+}
+
+std::optional<SurfaceField::Sample> SurfaceField::sample(const Eigen::Vector3f& point) const {
+  return surface::sample(parts_->blocks, parts_->settings, point / static_cast<float>(parts_->settings.voxel));
 }
 
 std::size_t SurfaceField::block_count() const { return parts_->blocks.list().size(); }

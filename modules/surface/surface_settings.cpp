@@ -32,6 +32,12 @@ void SurfaceSettings::describe(ParameterTable<SurfaceSettings>& table) {
       .range(0, 60)
       .unit("s");
   table
+      .add("interval", &S::interval,
+           "time between frames that are fused beside the keyframes, with the masks that were propagated to them: they "
+           "see more and average the sensor's noise; 0: keyframes alone are fused")
+      .range(0, 60)
+      .unit("s");
+  table
       .add("resting_time", &S::resting_time,
            "time after which something that moved and stands still, such as a chair that was moved, counts as part of "
            "the room, although filters call it moving because old keyframes looked through it; 0: never")
@@ -42,6 +48,10 @@ void SurfaceSettings::describe(ParameterTable<SurfaceSettings>& table) {
            "maximum number of keyframes that are fused again at their adjusted pose with each new keyframe; at the end "
            "of a run all are")
       .range(0, 1000);
+  table.add(
+      "poses", &S::poses,
+      "align the depth of frames that features do not hold with the surface; without features such poses last for "
+      "`tracking.depth_only_time`");
   table.add("formats", &S::formats, "files to write: ply (surface.ply), obj, glb (binary glTF 2.0)");
   table
       .add("triangles", &S::triangles,

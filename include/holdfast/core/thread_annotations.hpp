@@ -16,6 +16,7 @@
 #define HOLDFAST_REQUIRES(...) HOLDFAST_THREAD_ANNOTATION(requires_capability(__VA_ARGS__))
 #define HOLDFAST_EXCLUDES(...) HOLDFAST_THREAD_ANNOTATION(locks_excluded(__VA_ARGS__))
 #define HOLDFAST_ACQUIRE(...) HOLDFAST_THREAD_ANNOTATION(acquire_capability(__VA_ARGS__))
+#define HOLDFAST_TRY_ACQUIRE(...) HOLDFAST_THREAD_ANNOTATION(try_acquire_capability(__VA_ARGS__))
 #define HOLDFAST_RELEASE(...) HOLDFAST_THREAD_ANNOTATION(release_capability(__VA_ARGS__))
 
 namespace holdfast {
@@ -24,6 +25,7 @@ namespace holdfast {
 class HOLDFAST_CAPABILITY("mutex") Mutex {
  public:
   void lock() HOLDFAST_ACQUIRE() { mutex_.lock(); }
+  bool try_lock() HOLDFAST_TRY_ACQUIRE(true) { return mutex_.try_lock(); }
   void unlock() HOLDFAST_RELEASE() { mutex_.unlock(); }
 
  private:

@@ -12,7 +12,8 @@ namespace holdfast {
 
 /// Collects the images of keyframes and fuses their static pixels to a dense cloud at the end of the run, when the
 /// poses are final. Memory: view_bytes() per keyframe for at most DenseMapSettings::keyframes keyframes (384 kB each at
-/// 640x480 and step 2, 461 kB with labels), and about 64 bytes per occupied voxel during the fusion. Used by one thread.
+/// 640x480 and step 2, 461 kB with labels), and about 64 bytes per occupied voxel during the fusion. Used by one
+/// thread.
 class StaticScene {
  public:
   /// `keeps_labels`: see ViewSampler.
@@ -33,6 +34,7 @@ class StaticScene {
   const Camera& camera() const { return sampler_.camera(); }
   /// Memory of a kept view: colour, depth, and the label of each pixel if they are kept.
   std::size_t view_bytes() const;
+  const ViewSampler& sampler() const { return sampler_; }
 
   /// Static points of a kept view up to DenseMapSettings::maximum_depth, in the frame of its camera [m]: those of the
   /// finest regular grid of pixels with at most `max_count` pixels.

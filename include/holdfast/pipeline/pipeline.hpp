@@ -159,7 +159,8 @@ class Pipeline {
   /// for a hall, and fusion waits for it. From any thread, in both modes.
   std::shared_ptr<const FreeSpace> free_space() const;
   /// Calls `look` with the surface as fused so far; the fusion waits meanwhile, tracking does not. Returns false,
-  /// without a call, if there is no surface. Any thread, in both modes.
+  /// without a call, if there is no surface. Any thread, in both modes; with SurfaceSettings::poses, `look` must not
+  /// call the pipeline.
   bool with_surface(const std::function<void(const SurfaceMap&)>& look) const;
   /// FreeSpace::is_free() and FreeSpace::distance() [m] of free_space(), for a point in world coordinates. Throw Error
   /// without a surface.

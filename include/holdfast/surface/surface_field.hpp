@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "holdfast/core/camera.hpp"
@@ -72,6 +73,15 @@ class SurfaceField {
   /// Patches without triangles: the surface is gone. Nothing is left out of it as of mesh(). `coarseness` from 0 to 2:
   /// the field is sampled by the means of 1^3, 2^3 or 4^3 voxels.
   std::vector<SurfacePatch> changes(std::uint64_t since, int coarseness) const;
+
+  /// The field at a point.
+  struct Sample {
+    float distance = 0.0F;                            ///< to the surface, positive before it [m]
+    Eigen::Vector3f slope = Eigen::Vector3f::Zero();  ///< gradient of the distance [m per m]
+  };
+  /// Interpolates the field between voxels; empty where one of the eight around is not observed, or free. Not at the
+  /// same time as changes() or a change, because it keeps the last place in the tree.
+  std::optional<Sample> sample(const Eigen::Vector3f& point) const;
 
   std::size_t block_count() const;
   std::size_t memory_bytes() const;

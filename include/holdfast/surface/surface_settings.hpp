@@ -20,12 +20,18 @@ struct SurfaceSettings {
   double smallest_part = 0.02;  ///< connected parts of the mesh with a smaller area are left out [m^2]
   /// Time between frames whose coarse depth carves free space, beside the keyframes [s]; 0 = keyframes alone carve.
   double carving_interval = 0.2;
+  /// Time between frames that are fused beside the keyframes, with the masks that were propagated to them [s]; 0 =
+  /// keyframes alone are fused.
+  double interval = 0.0;
   /// Time after which something that moved and stands still counts as part of the room [s]; 0 = never, if a filter
   /// keeps calling it moving because old keyframes looked through it. Classes of dense_map.classes never count.
   double resting_time = 0.0;
   /// Maximum number of keyframes that are fused again at their adjusted pose when another one is added; at the end of a
   /// run all are.
   int moves_per_keyframe = 2;
+  /// Whether frames that features do not hold are aligned with the surface (align_with_surface()), for
+  /// TrackingSettings::depth_only_time without features.
+  bool poses = false;
   std::vector<std::string> formats = {"ply"};  ///< files that a run writes: surface.ply, surface.obj, surface.glb
   /// Whether a run keeps the fused images in the folder surface_views beside its map, for `holdfast map export --mesh`.
   bool keep_depth = false;

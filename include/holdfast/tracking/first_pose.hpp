@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Geometry>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "holdfast/core/frame_result.hpp"
@@ -42,8 +45,14 @@ class FirstPose {
 /// Methods in the order in which they are tried.
 using FirstPoses = std::vector<std::unique_ptr<FirstPose>>;
 
+/// Aligns the depth image of a frame with something that is known of the room: T_camera_world from its predicted value.
+/// Empty if the depth does not determine it. Adds its time to `times`.
+using DepthAlignment = std::function<std::optional<Eigen::Isometry3d>(
+    const Frame& frame, const Eigen::Isometry3d& predicted, StageTimes& times)>;
+
 /// The methods of Holdfast: motion model, inertial search, reference keyframe, inertial return, odometry, masked
-/// features, dense depth, inertial bridge, relocalisation.
-FirstPoses default_first_poses();
+/// features, dense depth, inertial bridge, relocalisation. With `surface`, depth is aligned with that first, and then
+/// with keyframes.
+FirstPoses default_first_poses(const DepthAlignment& surface = {});
 
 }  // namespace holdfast

@@ -1,21 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <utility>
+
 #include "holdfast/tracking/first_pose.hpp"
 
 namespace holdfast {
 
-/// Alignment of the depth image with those of keyframes, refined by features where they agree, for
-/// TrackingSettings::depth_only_time without them.
+/// Alignment of the depth image with those of keyframes, or with what is given, refined by features where they agree,
+/// for TrackingSettings::depth_only_time without them.
 class DenseDepth final : public FirstPose {
  public:
+  explicit DenseDepth(DepthAlignment align = {}) : align_(std::move(align)) {}
+
   FirstPoseOutcome find(PoseSearch& search) override {
     TrackingContext& context = search.context;
     if (search.situation.was_lost || !context.history.has_previous()) return FirstPoseOutcome::none;
     FrameResult& result = search.result;
     result.fallback = TrackingFallback::dense_depth;
-    const auto aligned = context.moving_world.align_depth(context.current, context.predicted_pose(),
-                                                          context.reference_keyframe, result.times);
+    const Eigen::Isometry3d predicted = context.predicted_pose();
+    const auto aligned =
+        align_ ? align_(context.current, predicted, result.times)
+               : context.moving_world.align_depth(context.current, predicted, context.reference_keyframe, result.times);
     if (!aligned || context.inertia.contradicts(*aligned, 1.0)) return FirstPoseOutcome::none;
     result.method = TrackingMethod::motion_model;
     const TrackingFailure failure = result.failure;
@@ -35,6 +41,9 @@ class DenseDepth final : public FirstPose {
     result.failure = failure;
     return FirstPoseOutcome::final_pose;
   }
+
+ private:
+  DepthAlignment align_;  // none: keyframes
 };
 
 }  // namespace holdfast

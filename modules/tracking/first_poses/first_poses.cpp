@@ -9,7 +9,7 @@
 
 namespace holdfast {
 
-FirstPoses default_first_poses() {
+FirstPoses default_first_poses(const DepthAlignment& surface) {
   FirstPoses poses;
   poses.push_back(std::make_unique<Prediction>(predict_by_motion_model));
   poses.push_back(std::make_unique<InertialSearch>());
@@ -17,6 +17,7 @@ FirstPoses default_first_poses() {
   poses.push_back(std::make_unique<InertialReturn>());
   poses.push_back(std::make_unique<Odometry>());
   poses.push_back(std::make_unique<MaskedFeatures>());
+  if (surface) poses.push_back(std::make_unique<DenseDepth>(surface));
   poses.push_back(std::make_unique<DenseDepth>());
   poses.push_back(std::make_unique<InertialBridge>());
   poses.push_back(std::make_unique<Relocalisation>());

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "holdfast/core/frame.hpp"
+#include "holdfast/core/map.hpp"
+#include "holdfast/core/sensor_frame.hpp"
+#include "holdfast/dense_map/kept_view.hpp"
+
+namespace holdfast {
+
+/// Images of frames between keyframes that a surface is fused from as well: they see what no keyframe sees, and average
+/// the noise of the sensor. Their masks are those that were propagated to them. Used by one thread.
+class FusedFrames {
+ public:
+  /// At most `max_count` views, at least `interval` [s] apart; above it, the view without which the gap in time is
+  /// smallest is left out.
+  FusedFrames(const ViewSampler& sampler, double interval, int max_count)
+      : sampler_(sampler), interval_(interval), max_count_(max_count) {}
+
+  /// Whether the frame of this time stamp [s] is to be added.
+  bool is_due(double timestamp) const { return !(timestamp - last_ < interval_); }
+  /// Notes that the keyframe of this time stamp is fused.
+  void keyframe_kept(double timestamp) { last_ = timestamp; }
+  /// Adds a frame with a pose, which follows the keyframe whose present pose is T_keyframe_world. `left_out`: see
+  /// ViewSampler::sample().
+  void add(const SensorFrame& sensor_frame, const Frame& frame, KeyFrameId keyframe,
+           const Eigen::Isometry3d& T_keyframe_world, const std::vector<bool>& left_out);
+  /// Removes views of keyframes that were removed with their submap.
+  void forget_removed(const Map& map);
+
+  /// By increasing frame index.
+  const std::vector<KeptView>& views() const { return views_; }
+
+ private:
+  const ViewSampler& sampler_;
+  double interval_;
+  int max_count_;
+  double last_ = -1e300;
+  std::vector<KeptView> views_;
+};
+
+}  // namespace holdfast
