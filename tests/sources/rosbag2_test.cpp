@@ -11,6 +11,7 @@
 #include "image_message.hpp"
 #include "mcap_file.hpp"
 #include "sources/recording.hpp"
+#include "support/npm_tools.hpp"
 
 namespace holdfast {
 namespace {
@@ -147,6 +148,26 @@ TEST_F(Rosbag2Test, GivesTheSameFramesFromEveryContainer) {
     else
       expect_the_frames(bag_file(row.name));
   }
+}
+
+TEST_F(Rosbag2Test, GivesTheSameFramesFromAHundredFiles) {
+  if (!has_zstd || !has_sqlite) GTEST_SKIP() << "built without zstd or SQLite";
+  const test::NpmTools tools(HOLDFAST_TEST_NPM_FOLDER,
+                             {"@mcap/core@2.2.2", "@foxglove/rosmsg@5.0.5", "@foxglove/rosmsg-serialization@2.0.4",
+                              "@foxglove/rosmsg2-serialization@3.1.0", "@foxglove/cdr@3.5.0",
+                              "@foxglove/wasm-zstd@1.0.1", "lz4js@0.2.0", "sql.js@1.16.0"});
+  if (!tools.trouble().empty()) GTEST_SKIP() << tools.trouble();
+  const std::filesystem::path many = folder_.path() / "many";
+  ASSERT_TRUE(
+      tools.run("node '" HOLDFAST_BAGS "/write_bags.mjs' '" + many.string() + "' many", folder_.path() / "output"))
+      << bytes_of(folder_.path() / "output");
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(many)) {
+    SCOPED_TRACE(entry.path().filename().string());
+    expect_the_frames(entry.path());
+    ++count;
+  }
+  EXPECT_EQ(count, 107);
 }
 
 TEST_F(Rosbag2Test, NamesARecordingByItsFileOrFolder) {

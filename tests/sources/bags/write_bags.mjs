@@ -4,7 +4,9 @@
 //
 //   npm install @mcap/core@2.2.2 @foxglove/rosmsg@5.0.5 @foxglove/rosmsg-serialization@2.0.4
 //     @foxglove/rosmsg2-serialization@3.1.0 @foxglove/cdr@3.5.0 @foxglove/wasm-zstd@1.0.1 lz4js@0.2.0 sql.js@1.16.0
-//   node write_bags.mjs FOLDER
+//   node write_bags.mjs FOLDER [many]
+//
+// `many`: all variants that these programs can write, which a test reads, in place of the recordings of this folder.
 //
 // Every recording has the same frames, as rosbag2_test.cpp computes them: colour(x, y, i) and depth(x, y, i).
 import fs from "node:fs";
@@ -166,19 +168,11 @@ const byZstd = { compressChunk: (data) => ({ compression: "zstd", compressedData
 const byLz4 = { compressChunk: (data) => ({ compression: "lz4", compressedData: lz4.compress(data) }) };
 const bare = { useStatistics: false, useSummaryOffsets: false, repeatSchemas: false, repeatChannels: false, useAttachmentIndex: false,
   useMetadataIndex: false, useMessageIndex: false, useChunkIndex: false };
-await writeMcap("zstd.mcap", 2, messages(2), byZstd);
-await writeMcap("lz4.mcap", 2, messages(2), byLz4);
-await writeMcap("chunks.mcap", 2, messages(2), {});
-await writeMcap("without_chunks.mcap", 2, messages(2), { useChunks: false });
-await writeMcap("without_index.mcap", 2, messages(2), { ...byZstd, ...bare });
-await writeMcap("ros1.mcap", 1, messages(1), byLz4);
-await writeMcap("compressed_images.mcap", 2, messages(2, "compressed"), byZstd);
-await writeMcap("big_endian.mcap", 2, bigEndianMessages(), byZstd);
 
 // The tables of rosbag2, in the versions of Foxy and Jazzy (schema 2 and 4).
-function database(list, schema) {
+function database(list, schema, pageSize = 1024) {
   const data = new SQL.Database();
-  data.run("PRAGMA page_size = 1024");
+  data.run(`PRAGMA page_size = ${pageSize}`);
   const hash = schema >= 4 ? ", type_description_hash TEXT NOT NULL" : "";
   if (schema >= 3) data.run("CREATE TABLE schema(schema_version INTEGER PRIMARY KEY, ros_distro TEXT NOT NULL)");
   if (schema >= 3) data.run("INSERT INTO schema VALUES (?, 'jazzy')", [schema]);
@@ -214,8 +208,36 @@ ${list}  duration:
   compression_mode: "${compression}"
 `);
 }
-const all = messages(2);
-fs.writeFileSync(path.join(folder, "jazzy.db3"), database(all, 4));
-rosbag2("split", [["split_0.db3", database(all.slice(0, 5), 2)], ["split_1.db3", database(all.slice(5), 2)]], "");
-rosbag2("zstd_files", [["zstd_files_0.db3.zstd", zstd.compress(database(all.slice(0, 7), 4), 9)], ["zstd_files_1.db3.zstd", zstd.compress(database(all.slice(7), 4), 9)]], "FILE");
-rosbag2("zstd_messages", [["zstd_messages_0.db3", database(all.map(([topic, type, time, bytes]) => [topic, type, time, zstd.compress(bytes, 9)]), 2)]], "MESSAGE");
+async function writeFew() {
+  await writeMcap("zstd.mcap", 2, messages(2), byZstd);
+  await writeMcap("lz4.mcap", 2, messages(2), byLz4);
+  await writeMcap("chunks.mcap", 2, messages(2), {});
+  await writeMcap("without_chunks.mcap", 2, messages(2), { useChunks: false });
+  await writeMcap("without_index.mcap", 2, messages(2), { ...byZstd, ...bare });
+  await writeMcap("ros1.mcap", 1, messages(1), byLz4);
+  await writeMcap("compressed_images.mcap", 2, messages(2, "compressed"), byZstd);
+  await writeMcap("big_endian.mcap", 2, bigEndianMessages(), byZstd);
+  const all = messages(2);
+  fs.writeFileSync(path.join(folder, "jazzy.db3"), database(all, 4));
+  rosbag2("split", [["split_0.db3", database(all.slice(0, 5), 2)], ["split_1.db3", database(all.slice(5), 2)]], "");
+  rosbag2("zstd_files", [["zstd_files_0.db3.zstd", zstd.compress(database(all.slice(0, 7), 4), 9)], ["zstd_files_1.db3.zstd", zstd.compress(database(all.slice(7), 4), 9)]], "FILE");
+  rosbag2("zstd_messages", [["zstd_messages_0.db3", database(all.map(([topic, type, time, bytes]) => [topic, type, time, zstd.compress(bytes, 9)]), 2)]], "MESSAGE");
+}
+
+async function writeMany() {
+  const lists = { raw: [2, messages(2)], compressed: [2, messages(2, "compressed")], big_endian: [2, bigEndianMessages()], ros1: [1, messages(1)] };
+  const ways = { plain: {}, lz4: byLz4, zstd: byZstd };
+  for (const [kind, [version, list]] of Object.entries(lists))
+    for (const [index, options] of Object.entries({ indexed: {}, bare })) {
+      await writeMcap(`${kind}_without_chunks_${index}.mcap`, version, list, { useChunks: false, ...options });
+      for (const [way, compression] of Object.entries(ways))
+        for (const chunkSize of [1, 2000, 1000000])
+          await writeMcap(`${kind}_${way}_${chunkSize}_${index}.mcap`, version, list, { ...compression, ...options, chunkSize });
+    }
+  for (const kind of ["raw", "compressed", "big_endian"])
+    for (const schema of [2, 3, 4])
+      for (const pageSize of [512, 4096, 65536])
+        fs.writeFileSync(path.join(folder, `${kind}_${schema}_${pageSize}.db3`), database(lists[kind][1], schema, pageSize));
+}
+
+await (process.argv[3] === "many" ? writeMany() : writeFew());
