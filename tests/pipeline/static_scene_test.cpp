@@ -144,18 +144,53 @@ SensorFrame with_wall(SensorFrame frame) {
   return frame;
 }
 
+PipelineParts parts_with_surface(test::PointWorld& world) {
+  Registry registry;
+  holdfast_register_plugin_ceres(registry);
+  PipelineParts parts;
+  parts.camera = world.camera();
+  parts.features = std::make_unique<test::PointExtractor>(world, 0.3);
+  parts.optimizer = registry.create<Optimizer>("ceres", {}, {});
+  parts.surface = {.enabled = true, .voxel = 0.2, .maximum_depth = 9.0, .moves_per_keyframe = 0, .cell = 0.5};
+  parts.dense_map.step = 8;
+  return parts;
+}
+
+TEST(PipelineSurface, HoldsFramesWithoutFeaturesIfAsked) {
+  if (!SurfaceField::is_available()) GTEST_SKIP() << "built without OpenVDB";
+  for (const bool poses : {false, true}) {
+    test::PointWorld world(find_camera("tum_fr3").value());
+    PipelineParts parts = parts_with_surface(world);
+    parts.surface.poses = poses;
+    parts.surface.minimum_views = 1;  // few keyframes are made in a second
+    parts.surface.interval = poses ? 0.1 : 0.0;
+    Pipeline pipeline(std::move(parts));
+    int by_depth = 0;
+    for (int i = 0; i < 40; ++i) {
+      const Eigen::Isometry3d truth = test::path_pose(i / 30.0);
+      const FrameResult result =
+          pipeline.feed(with_wall(world.frame(static_cast<std::uint64_t>(i), i / 30.0, truth, i < 30)));
+      if (i < 30 || result.fallback != TrackingFallback::dense_depth) continue;
+      ++by_depth;
+      // The wall goes along with the camera, and voxels have 20 cm.
+      EXPECT_LT((result.T_world_camera->translation() - truth.translation()).norm(), 0.1) << i;
+    }
+    EXPECT_EQ(by_depth, poses ? 10 : 0);
+    pipeline.finish();
+    const std::uint64_t keyframes = pipeline.mapping_counts().keyframes_made;
+    if (poses) {
+      EXPECT_GE(pipeline.surface()->keyframe_count(), keyframes + 2U) << "frames between keyframes";
+    } else {
+      EXPECT_EQ(pipeline.surface()->keyframe_count(), keyframes);
+    }
+  }
+}
+
 TEST(PipelineSurface, HasEveryKeyframeAtItsFinalPose) {
   if (!SurfaceField::is_available()) GTEST_SKIP() << "built without OpenVDB";
   for (const bool threaded : {false, true}) {
     test::PointWorld world(find_camera("tum_fr3").value());
-    Registry registry;
-    holdfast_register_plugin_ceres(registry);
-    PipelineParts parts;
-    parts.camera = world.camera();
-    parts.features = std::make_unique<test::PointExtractor>(world, 0.3);
-    parts.optimizer = registry.create<Optimizer>("ceres", {}, {});
-    parts.surface = {.enabled = true, .voxel = 0.2, .maximum_depth = 9.0, .moves_per_keyframe = 0, .cell = 0.5};
-    parts.dense_map.step = 8;
+    PipelineParts parts = parts_with_surface(world);
     if (threaded) parts.run.mode = RunMode::threaded;
     SurfaceObserver::Vertices observed;
     parts.observers.push_back(std::make_unique<SurfaceObserver>(observed));

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <utility>
+
 #include "holdfast/core/coarse_view.hpp"
 #include "holdfast/geometry/se3.hpp"
 #include "surface/solid_world.hpp"
@@ -53,6 +56,19 @@ TEST_F(SurfaceAlignmentTest, FindsThePoseFromAPredictionNearby) {
   ASSERT_TRUE(aligned);
   EXPECT_GT(error(predicted.inverse(), truth), 0.02);
   EXPECT_LT(error(*aligned, truth), 0.004);
+}
+
+TEST_F(SurfaceAlignmentTest, PosesThatArePredictedFromEachOtherStayRigid) {
+  const SurfaceField surface = field();
+  Eigen::Isometry3d last = pose(0.0, 0.0).inverse(), before_last = last;
+  for (int i = 0; i < 60; ++i) {
+    const Eigen::Isometry3d truth = pose(0.1 * std::sin(0.1 * i), 0.0);
+    const auto aligned =
+        align_with_surface(surface, coarse_at(truth), world.camera, last * before_last.inverse() * last);
+    ASSERT_TRUE(aligned) << i;
+    ASSERT_LT(error(*aligned, truth), 0.01) << i;
+    before_last = std::exchange(last, *aligned);
+  }
 }
 
 TEST_F(SurfaceAlignmentTest, SomebodyBeforeTheSurfaceDoesNotCount) {
