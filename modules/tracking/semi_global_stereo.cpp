@@ -20,9 +20,10 @@ constexpr int step = 16;            // the number of disparities that OpenCV sea
 /// The least number of disparities that OpenCV can search up to this one [px].
 int in_steps(double disparity) { return std::max(1, static_cast<int>(std::ceil(disparity / step))) * step; }
 
-cv::Ptr<cv::StereoSGBM> make_matcher() {
+/// `speckle_size`: smaller regions of like disparities are taken for errors [pixels].
+cv::Ptr<cv::StereoSGBM> make_matcher(int speckle_size) {
   constexpr int block = 5;  // px
-  constexpr int uniqueness = 10, speckle_size = 60, speckle_range = 2, left_right = 1;
+  constexpr int uniqueness = 10, speckle_range = 2, left_right = 1;
   // The penalties that OpenCV's documentation recommends.
   return cv::StereoSGBM::create(0, step, block, 8 * block * block, 32 * block * block, left_right, 0, uniqueness,
                                 speckle_size, speckle_range, cv::StereoSGBM::MODE_SGBM_3WAY);
@@ -40,12 +41,14 @@ const std::int16_t* half_row(const cv::Mat& half, int row) {
 }  // namespace
 
 SemiGlobalStereo::SemiGlobalStereo(double max_disparity, int width)
-    : disparities_(in_steps(std::min(max_disparity, 0.5 * width) / 2.0)), matcher_(make_matcher()) {}
+    : disparities_(in_steps(std::min(max_disparity, 0.5 * width) / 2.0)),
+      matcher_(make_matcher(60)),
+      coarse_matcher_(make_matcher(4)) {}
 
 void SemiGlobalStereo::match(const cv::Mat& left, const cv::Mat& right, cv::Mat& disparity) {
   halve(left, half_left_);
   halve(right, half_right_);
-  match_padded(half_left_, half_right_, needed_disparities(), half_disparity_);
+  match_padded(*matcher_, half_left_, half_right_, needed_disparities(), half_disparity_);
   left_ = left;
   right.convertTo(right_, CV_8U, 1.0, brightness_difference());
   compare();
@@ -60,7 +63,7 @@ int SemiGlobalStereo::needed_disparities() {
   halve(quarter_, coarse_left_);
   halve(half_right_, quarter_);
   halve(quarter_, coarse_right_);
-  match_padded(coarse_left_, coarse_right_, in_steps(disparities_ / coarser), coarse_disparity_);
+  match_padded(*coarse_matcher_, coarse_left_, coarse_right_, in_steps(disparities_ / coarser), coarse_disparity_);
   std::vector<int> counts(static_cast<std::size_t>(disparities_ / coarser + step), 0);
   for (int row = 0; row < coarse_disparity_.rows; ++row)
     for (int column = 0; column < coarse_disparity_.cols; ++column)
@@ -74,11 +77,12 @@ int SemiGlobalStereo::needed_disparities() {
   return std::min(in_steps(coarser * (disparity + margin)), disparities_);
 }
 
-void SemiGlobalStereo::match_padded(const cv::Mat& left, const cv::Mat& right, int disparities, cv::Mat& result) {
+void SemiGlobalStereo::match_padded(cv::StereoSGBM& matcher, const cv::Mat& left, const cv::Mat& right, int disparities,
+                                    cv::Mat& result) {
   cv::copyMakeBorder(left, padded_left_, 0, 0, disparities, 0, cv::BORDER_REPLICATE);
   cv::copyMakeBorder(right, padded_right_, 0, 0, disparities, 0, cv::BORDER_REPLICATE);
-  matcher_->setNumDisparities(disparities);
-  matcher_->compute(padded_left_, padded_right_, padded_disparity_);
+  matcher.setNumDisparities(disparities);
+  matcher.compute(padded_left_, padded_right_, padded_disparity_);
   padded_disparity_.colRange(disparities, padded_disparity_.cols).copyTo(result);
 }
 

@@ -33,7 +33,8 @@ class SemiGlobalStereo final : public DenseStereo {
   /// The number of disparities to be searched at half the resolution.
   int needed_disparities();
   /// OpenCV has no disparity in the first columns, as many as it searches disparities: both images get as many more.
-  void match_padded(const cv::Mat& left, const cv::Mat& right, int disparities, cv::Mat& result);
+  void match_padded(cv::StereoSGBM& matcher, const cv::Mat& left, const cv::Mat& right, int disparities,
+                    cv::Mat& result);
   /// Median difference of the brightness of both images, left minus right, at the matches of half the resolution:
   /// exposures differ.
   int brightness_difference() const;
@@ -42,7 +43,7 @@ class SemiGlobalStereo final : public DenseStereo {
   void remove_occluded(cv::Mat& disparity);
 
   int disparities_;  ///< largest number at half the resolution
-  cv::Ptr<cv::StereoSGBM> matcher_;
+  cv::Ptr<cv::StereoSGBM> matcher_, coarse_matcher_;
   cv::Mat quarter_, coarse_left_, coarse_right_, coarse_disparity_;
   cv::Mat padded_left_, padded_right_, padded_disparity_;
   cv::Mat half_left_, half_right_, half_disparity_;  // the last one 16SC1 [1/16 px]
