@@ -51,7 +51,7 @@ endfunction()
 # The compiler, whose C++20 is what matters.
 function(holdfast_check_compiler id version)
   if(id STREQUAL "GNU")
-    holdfast_check_version("g++" "${version}" 11 g++ HINT "name another compiler by -DCMAKE_CXX_COMPILER=g++-12")
+    holdfast_check_version("g++" "${version}" 12 g++ HINT "name another compiler by -DCMAKE_CXX_COMPILER=g++-12")
   elseif(id STREQUAL "Clang")
     holdfast_check_version("clang++" "${version}" 14 clang HINT "name another compiler by -DCMAKE_CXX_COMPILER=g++")
   else()

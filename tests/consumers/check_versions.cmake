@@ -27,7 +27,7 @@ expect_problem("  Ceres was not found; expected 2.1 or later (Debian: libceres-d
 holdfast_check_compiler(GNU 12.2.0)
 expect_problem("")
 holdfast_check_compiler(GNU 10.2.1)
-expect_problem("  g++ 10.2.1 is too old; expected 11 or later (Debian: g++); name another compiler by -DCMAKE_CXX_COMPILER=g++-12\n")
+expect_problem("  g++ 10.2.1 is too old; expected 12 or later (Debian: g++); name another compiler by -DCMAKE_CXX_COMPILER=g++-12\n")
 holdfast_check_compiler(Clang 13.0.1)
 expect_problem("  clang++ 13.0.1 is too old; expected 14 or later (Debian: clang); name another compiler by -DCMAKE_CXX_COMPILER=g++\n")
 holdfast_check_processor(8 LITTLE_ENDIAN)
