@@ -93,10 +93,23 @@ void instances_do_not_meet(const Maker& maker) {
                    [&] { show_run(*two, second, TrackingStatus::tracked); });
 }
 
+void lives_through_interrupts(const Maker& maker) {
+  FilterScene scene(standard_camera());
+  const auto observer = maker.make<Observer>();
+  run_side_by_side([&] { show_run(*observer, scene, TrackingStatus::tracked); },
+                   [&] {
+                     for (int i = 0; i < 100; ++i) observer->interrupt();
+                   });
+}
+
 }  // namespace
 
 std::vector<Check> observer_checks() {
   const Promise events{header, "Observes a run. Every method does nothing unless overridden."};
+  const Promise interrupts{
+      header,
+      "When the run is interrupted (Pipeline::interrupt()), by any thread, also during another call, and more than "
+      "once:"};
   const Promise images{"holdfast/core/sensor_frame.hpp",
                        "The images are shared, not copied, and must not be written to."};
   return {
@@ -104,6 +117,7 @@ std::vector<Check> observer_checks() {
       {"LivesThroughALoss", events, lives_through_a_loss},
       {"LivesWithoutDepthFeaturesAndTruth", events, lives_without_depth_features_and_truth},
       {"LivesWithNoEvent", events, lives_with_no_event},
+      {"LivesThroughInterrupts", interrupts, lives_through_interrupts},
       {"WritesToNoImage", images, writes_to_no_image},
       {"InstancesDoNotMeet", events, instances_do_not_meet},
   };
