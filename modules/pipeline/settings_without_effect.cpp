@@ -15,9 +15,10 @@ void PipelineBuilder::check_effects() {
             "'surface' has no effect where the camera is only localised in a map, which stays as it is; continue the "
             "map instead, or remove 'surface'");
   if (parts_.surface.enabled && parts_.surface.classes && (!segmenter_ || segmenter_->name == "none"))
-    suspect(origin_.place,
-            "'surface.classes' has no effect without a segmenter, which gives pixels their classes; set 'segmenter', or "
-            "remove 'surface.classes'");
+    suspect(
+        origin_.place,
+        "'surface.classes' has no effect without a segmenter, which gives pixels their classes; set 'segmenter', or "
+        "remove 'surface.classes'");
   bool uses_masks = false;
   for (std::size_t i = 0; i < filters_.size(); ++i) {
     const Needs needs = parts_.filters[i].second->needs();
