@@ -92,7 +92,8 @@ void FactorEvaluation::add_inertial(std::uint32_t index) {
                 .has_world = true,
                 .rows = 15,
                 .root = {}};
-  const geometry::Matrix15d& covariance = inertial.measured.covariance();
+  geometry::Matrix15d covariance = inertial.measured.covariance();
+  covariance.diagonal() += inertial.more_variance;
   const Eigen::LLT<geometry::Matrix15d> cholesky(covariance);
   const bool usable = covariance.allFinite() && cholesky.info() == Eigen::Success;
   add(factor, usable ? Eigen::MatrixXd(cholesky.matrixL().solve(geometry::Matrix15d::Identity())) : Eigen::MatrixXd());

@@ -27,15 +27,25 @@ std::vector<int> count_shared_points(const Map& map) {
   return shared;
 }
 
-/// The keyframes with enough observations to be adjusted, oldest first; the first one of every submap fixes its gauge
-/// and is always included.
-std::vector<KeyFrameId> placeable_keyframes(const Map& map) {
+/// By slot, whether inertial measurements link a keyframe to the one before or after it in time.
+std::vector<std::uint8_t> find_linked(const Map& map, const InertialHistory* inertia) {
+  std::vector<std::uint8_t> is_linked(map.keyframes().slot_count(), 0);
+  if (inertia == nullptr) return is_linked;
+  const std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
+  for (const InertialHistory::Link& link : inertia->links(linkable_stamps(map, keyframes, inertia->submap())))
+    is_linked[keyframes[link.first].slot] = is_linked[keyframes[link.second].slot] = 1;
+  return is_linked;
+}
+
+/// The keyframes with enough observations to be adjusted, or with an inertial link, oldest first; the first one of
+/// every submap fixes its gauge and is always included.
+std::vector<KeyFrameId> placeable_keyframes(const Map& map, const std::vector<std::uint8_t>& is_linked) {
   const std::vector<int> shared = count_shared_points(map);
   std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
   SubmapSet submaps;
   std::erase_if(keyframes, [&](KeyFrameId id) {
     const bool is_first = submaps.add(map.keyframe(id).submap);
-    return !is_first && shared[id.slot] < minimum_shared_points;
+    return !is_first && shared[id.slot] < minimum_shared_points && is_linked[id.slot] == 0;
   });
   return keyframes;
 }
@@ -128,18 +138,31 @@ void FullAdjustment::prepare() {
   problem_.function_tolerance = settings_.full_tolerance;
 
   const std::lock_guard lock(map_mutex_);
-  keyframes_ = placeable_keyframes(map_);
-  constexpr std::uint32_t left_out = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> pose_of_slot(map_.keyframes().slot_count(), left_out);
+  copy_poses();
+  copy_points();
+  if (inertia_ != nullptr)
+    is_linked_ = add_inertial_factors(problem_, linkable_stamps(map_, keyframes_, inertia_->submap()), *inertia_);
+}
+
+void FullAdjustment::copy_poses() {
+  const std::vector<std::uint8_t> is_linked = find_linked(map_, inertia_);
+  keyframes_ = placeable_keyframes(map_, is_linked);
+  is_linked_.assign(keyframes_.size(), 0);
   const std::vector<std::uint8_t> holds_island = find_island_holders(map_);
   SubmapSet submaps;
-  for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
-    const KeyFrame& keyframe = map_.keyframe(keyframes_[i]);
-    if (i == 0) problem_.camera = keyframe.frame.camera.get();
-    pose_of_slot[keyframes_[i].slot] = i;
+  for (const KeyFrameId id : keyframes_) {
+    const KeyFrame& keyframe = map_.keyframe(id);
+    if (problem_.camera == nullptr) problem_.camera = keyframe.frame.camera.get();
     const bool holds_submap = submaps.add(keyframe.submap);
-    problem_.poses.push_back({keyframe.frame.T_camera_world, holds_submap || holds_island[keyframes_[i].slot] != 0});
+    const bool is_held = holds_island[id.slot] != 0 && is_linked[id.slot] == 0;
+    problem_.poses.push_back({keyframe.frame.T_camera_world, holds_submap || is_held});
   }
+}
+
+void FullAdjustment::copy_points() {
+  constexpr std::uint32_t left_out = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> pose_of_slot(map_.keyframes().slot_count(), left_out);
+  for (std::uint32_t i = 0; i < keyframes_.size(); ++i) pose_of_slot[keyframes_[i].slot] = i;
   points_.reserve(map_.points().size());
   problem_.points.reserve(map_.points().size());
   map_.points().for_each([&](MapPointId id, const MapPoint& point) {
@@ -199,7 +222,8 @@ void FullAdjustment::move_map() {
   const std::lock_guard lock(map_mutex_);
   const std::vector<int> shared = count_shared_points(map_);
   std::vector<std::uint8_t> is_weak;
-  for (const KeyFrameId id : keyframes_) is_weak.push_back(shared[id.slot] < few_points ? 1 : 0);
+  for (std::size_t i = 0; i < keyframes_.size(); ++i)
+    is_weak.push_back(shared[keyframes_[i].slot] < few_points && is_linked_[i] == 0 ? 1 : 0);
   const MapMotion motion(map_, keyframes_, poses, {}, is_weak);
   summary_.keyframes_carried = motion.move_keyframes(map_);
   std::vector<std::uint8_t> is_placed(map_.points().slot_count(), 0);

@@ -236,8 +236,8 @@ bool KeyframeFlow::close_loops(const LoopJob& job, StageTimes& times) {
 void KeyframeFlow::record_without_loop(const LoopJob& job) {
   const MutexLock lock(record_mutex_);
   loop_record_.counts = closer_.counts();
-  if (job.keyframe.valid() && !loop_record_.loops.empty() && parts_.loop_closing.full_adjustment)
-    ++keyframes_since_adjustment_;
+  const bool has_constraints = !loop_record_.loops.empty() || links_by_inertia_;
+  if (job.keyframe.valid() && has_constraints && parts_.loop_closing.full_adjustment) ++keyframes_since_adjustment_;
 }
 
 void KeyframeFlow::record_loop(const ClosedLoop& loop) {

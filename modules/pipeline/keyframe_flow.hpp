@@ -38,6 +38,11 @@ class KeyframeFlow {
 
   /// Corrects the keyframes by the calibration of a stereo pair; before the first keyframe.
   void calibrate_pair(StereoCalibration& calibration) { mapper_.calibrate_pair(calibration); }
+  /// Has full adjustments use inertial measurements; before the first keyframe.
+  void use_inertia(const InertialHistory& history) {
+    links_by_inertia_ = true;
+    adjustment_.use_inertia(history);
+  }
   void start_threads();
   bool is_threaded() const { return mapping_.has_value(); }
   /// Throws what a thread threw, the segmenter's included.
@@ -74,7 +79,8 @@ class KeyframeFlow {
 
   /// Waits until every station has done what waits for it, and ends the threads.
   void finish();
-  /// Runs one more full adjustment if keyframes were added since the last loop, which constrain it further.
+  /// Runs one more full adjustment if keyframes were added since the last loop, which constrain it further, or with
+  /// inertial measurements since the last adjustment, if there was any.
   void adjust_after_last_loop();
   /// Fuses every view at its final pose; the threads have ended.
   void finish_surface();
@@ -170,6 +176,7 @@ class KeyframeFlow {
   SharedLoopDetector& detector_;
   const bool describes_images_;      // the detector, instead of using descriptors of features
   const bool points_need_parallax_;  // all points are made by triangulation
+  bool links_by_inertia_ = false;    // in full adjustments
   LocalMapper mapper_;
   LoopCloser closer_;
   FullAdjustment adjustment_;
@@ -188,7 +195,7 @@ class KeyframeFlow {
   mutable Mutex record_mutex_;
   std::vector<StageTimes> background_times_ HOLDFAST_GUARDED_BY(record_mutex_);
   LoopRecord loop_record_ HOLDFAST_GUARDED_BY(record_mutex_);
-  /// Of the whole map; none before the first loop.
+  /// Of the whole map; without inertial measurements none before the first loop.
   int keyframes_since_adjustment_ HOLDFAST_GUARDED_BY(record_mutex_) = 0;
 
   // Threads last: they use everything above, and each hands its work on to the one before it here.

@@ -13,6 +13,7 @@
 #include "holdfast/core/imu_timeline.hpp"
 #include "holdfast/core/stereo_calibration.hpp"
 #include "holdfast/core/thread_annotations.hpp"
+#include "holdfast/interfaces/inertial_history.hpp"
 #include "holdfast/map_io/map_export.hpp"
 #include "holdfast/map_io/map_file.hpp"
 #include "holdfast/moving_world/moving_world.hpp"
@@ -124,6 +125,10 @@ struct Pipeline::State {
     if (keeps_classes()) whole.set_classes(parts.segmenter->classes());
     whole.set_evidence_limit(static_cast<float>(parts.evidence.limit));
     if (calibration) flow.calibrate_pair(*calibration);
+    if (parts.imu && parts.tracking.inertia && parts.mapping.inertia && !parts.localise_only) {
+      inertia.emplace(*parts.imu, features_have_depth(parts.sensor));
+      flow.use_inertia(*inertia);
+    }
     for (const auto& observer : parts.observers) observer->on_start(parts.segmenter->classes());
     if (parts.localise_only)
       tracker.localise_only();
@@ -143,6 +148,12 @@ struct Pipeline::State {
   void accept(const SensorFrame& frame);
   void check_stamp(const SensorFrame& frame) const;
   void keep_imu(const SensorFrame& frame);
+  /// Notes a frame whose pose drifts: odometry does so too, and follows people where hardly anything else is seen. A
+  /// keyframe is placed by the adjustments of the map.
+  void note_bridge(const FrameResult& result) {
+    const bool drifts = result.status == TrackingStatus::inertial || result.fallback == TrackingFallback::odometry;
+    if (inertia && drifts && !result.is_keyframe) bridged.push_back(result.timestamp);
+  }
   /// What the sensor of this pipeline has of a frame, in colour where a part needs that.
   SensorFrame used_images(const SensorFrame& given) const;
   /// Gives the frame that is tracked the depth image of its pair, if there is one and something needs it.
@@ -176,9 +187,11 @@ struct Pipeline::State {
   bool has_frame = false;
   double last_timestamp = 0.0;
   HealthMonitor health;
-  Stopwatch since_start;       ///< the clock of health
-  std::vector<ImuSample> imu;  ///< the first minutes, for warnings
-  KeyframeFlow flow;           // last: its threads end before the others go
+  Stopwatch since_start;                   ///< the clock of health
+  std::vector<ImuSample> imu;              ///< the first minutes, for warnings
+  std::optional<InertialHistory> inertia;  ///< for adjustments
+  std::vector<double> bridged;             ///< time stamps of frames that no view of the map places [s]
+  KeyframeFlow flow;                       // last: its threads end before the others go
 };
 
 void Pipeline::State::accept(const SensorFrame& frame) {
@@ -204,6 +217,7 @@ void Pipeline::State::check_stamp(const SensorFrame& frame) const {
 
 void Pipeline::State::keep_imu(const SensorFrame& frame) {
   constexpr std::size_t most = 30000;
+  if (inertia) inertia->add(frame);
   if (!parts.imu || !parts.checks_imu) return;
   if (imu.size() < most) append_imu(imu, frame.imu);
 }
@@ -255,6 +269,7 @@ KeyFrameId Pipeline::State::insert_keyframe(const LockedMap& locked, const MapRe
     tracker.map_begun(locked, first_keyframe, points);
   }
   const std::uint32_t submap = request.kind == MapRequest::Kind::new_submap ? locked->new_submap() : request.submap;
+  if (inertia) inertia->set_estimates(tracker.inertia_of(locked, submap), submap);
   result.keyframe = flow.insert(locked, tracker.frame(), waits_for_mask, submap, result.times);
   if (is_refined_later()) tracker.keyframe_added(locked, result.keyframe);
   return first_keyframe;
@@ -299,6 +314,7 @@ FrameResult Pipeline::feed(const SensorFrame& given) {
     result.T_world_camera = s.tracker.frame().T_world_camera();
   }
   result.tracking_seconds += s.flow.take_masks(result.times);  // this frame's own, when there is no latency
+  s.note_bridge(result);
   s.health.add(result, s.since_start.seconds());
   for (const auto& observer : s.parts.observers) observer->on_frame(frame, s.tracker.frame(), result);
   return result;
@@ -314,10 +330,16 @@ void Pipeline::finish() {
     const LockedMap locked(s.map, LockPriority::background);
     s.flow.in_background([&](StageTimes& times) { s.tracker.finish(locked, times); });
     const std::uint32_t submap = s.tracker.main_submap(locked);
-    if (!s.parts.localise_only) locked->set_inertia(s.tracker.inertia_of(locked, submap));
+    const std::optional<MapInertia> estimates = s.tracker.inertia_of(locked, submap);
+    if (!s.parts.localise_only) locked->set_inertia(estimates);
+    if (s.inertia) s.inertia->set_estimates(estimates, submap);
     s.flow.keep_submap(locked, submap);
   }
   s.flow.adjust_after_last_loop();
+  if (s.inertia) {
+    const LockedMap locked(s.map, LockPriority::background);
+    s.tracker.smooth_bridges(locked, s.bridged, *s.inertia, *s.parts.optimizer);
+  }
   s.flow.finish_surface();
   if (s.keeps_classes()) s.map.unshared().classify_points();
   for (const auto& observer : s.parts.observers) observer->on_finish(s.map.unshared());

@@ -419,6 +419,7 @@ void PipelineBuilder::make_modules() {
   }
   parts_.segmenter = make_if_any(segmenter_);
   parts_.optimizer = make_if_any(optimizer_);
+  check_factors();
   parts_.loop_detector = make_if_any(loop_detector_);
   for (ModuleOf<DynamicFilter>& module : filters_) {
     std::unique_ptr<DynamicFilter> filter = make(module);
@@ -430,6 +431,18 @@ void PipelineBuilder::make_modules() {
   }
   check_class_weights();
   for (ModuleOf<Observer>& module : observers_) parts_.observers.push_back(make(module));
+}
+
+/// Adjustments with inertial measurements need an optimizer for them.
+void PipelineBuilder::check_factors() {
+  if (!parts_.optimizer || !parts_.imu || !parts_.tracking.inertia || !parts_.mapping.inertia) return;
+  if (parts_.optimizer->supports(FactorKind::inertial) && parts_.optimizer->supports(FactorKind::prior)) return;
+  add_diagnostic(optimizer_->place,
+                 "'mapping.inertia' needs an optimizer that solves problems with inertial factors, "
+                 "and '" +
+                     optimizer_->name +
+                     "' does not; choose 'ceres' or 'schur', or set "
+                     "mapping.inertia: false");
 }
 
 void PipelineBuilder::throw_diagnostics() {

@@ -38,6 +38,12 @@ bool FrameHistory::add_past(const Frame& frame, KeyFrameId reference, const Map&
   return true;
 }
 
+void FrameHistory::replace(double timestamp, const Eigen::Isometry3d& T_camera_world, const Map& map) {
+  const auto found = records_.begin() + (record_from(timestamp) - records_.cbegin());
+  const KeyFrameId reference = found->reference;
+  *found = record_of(timestamp, reference, T_camera_world * map.pose_of(reference).inverse(), map.scale_of(reference));
+}
+
 std::optional<FrameHistory::PastPose> FrameHistory::past_pose(double timestamp, const Map& map) const {
   const auto found = record_from(timestamp);
   if (found == records_.end() || found->timestamp != timestamp || !map.submap_of(found->reference)) return std::nullopt;

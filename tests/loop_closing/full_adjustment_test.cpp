@@ -75,6 +75,37 @@ TEST_F(FullAdjustmentTest, AKeyframeWithFewPointsStaysWithItsParent) {
   EXPECT_TRUE((map.pose_of(last) * map.pose_of(parent).inverse()).isApprox(relative, 1e-9));
 }
 
+/// What an IMU at the camera of RingWorld measures, which turns by 0.1 rad in each second.
+std::unique_ptr<InertialHistory> measured_ring() {
+  auto history = std::make_unique<InertialHistory>(*find_imu("bmi055"), true);
+  for (int second = 0; second < 20; ++second) {
+    SensorFrame frame;
+    frame.timestamp = second;
+    for (int i = -201; i <= 1; ++i)
+      frame.imu.push_back({second + 0.005 * i, {0.0, 0.1, 0.0}, {0.0, -standard_gravity, -0.015}});
+    history->add(frame);
+  }
+  MapInertia estimates;
+  estimates.gravity = {0.0, standard_gravity, 0.0};
+  history->set_estimates(estimates, 0);
+  return history;
+}
+
+TEST_F(FullAdjustmentTest, InertialMeasurementsPlaceKeyframesWithoutPoints) {
+  std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
+  for (std::size_t i = 9; i < 12; ++i) {
+    for (const MapPointId point : std::vector<MapPointId>(map.keyframe(keyframes[i]).frame.map_points))
+      if (point.valid()) map.remove_observation(point, keyframes[i]);
+    map.keyframe(keyframes[i]).frame.T_camera_world.translation().x() += 0.1;
+  }
+  const std::unique_ptr<InertialHistory> history = measured_ring();
+  adjustment.use_inertia(*history);
+  const FullAdjustmentSummary summary = adjustment.run();
+  ASSERT_TRUE(summary.applied);
+  EXPECT_EQ(summary.keyframes, 20);
+  for (std::size_t i = 9; i < 12; ++i) EXPECT_LT(world.error_of(map, keyframes[i]), 0.01) << i;
+}
+
 /// Moves the last camera far away, whatever the problem.
 class Flight final : public Optimizer {
  public:

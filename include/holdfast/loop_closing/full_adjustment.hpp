@@ -8,6 +8,7 @@
 
 #include "holdfast/core/map.hpp"
 #include "holdfast/core/map_mutex.hpp"
+#include "holdfast/interfaces/inertial_history.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
 #include "holdfast/loop_closing/full_adjustment_summary.hpp"
 #include "holdfast/loop_closing/loop_closing_settings.hpp"
@@ -18,7 +19,9 @@ namespace holdfast {
 /// and mapping: prepare() copies the map under the structure mutex and its lock, solve() works on the copy without any
 /// lock, apply() writes the result to the map under the structure mutex and the map's lock. Keyframes inserted
 /// meanwhile are moved with their parents, points with their reference keyframes; removed ones are skipped. The oldest
-/// keyframe is fixed.
+/// keyframe is fixed. With inertial measurements, factors link the keyframes: those behind a view that people hid,
+/// which hardly share a point with the others, are then placed by the motion from both sides (Campos et al. 2021,
+/// section VI-B).
 ///
 /// A stopped adjustment is never applied, because a new loop has moved the map or the run ends.
 ///
@@ -30,6 +33,8 @@ class FullAdjustment {
   /// All references must outlive this object.
   FullAdjustment(const LoopClosingSettings& settings, const SharedMap& shared, Optimizer& optimizer);
 
+  /// Links keyframes by these measurements, which must outlive this object.
+  void use_inertia(const InertialHistory& history) { inertia_ = &history; }
   /// Copies the map. Acquires the structure mutex and the map's lock.
   void prepare();
   /// Solves the problem without a lock; checks for a request to stop between iterations.
@@ -50,6 +55,8 @@ class FullAdjustment {
   void cancel();
 
  private:
+  void copy_poses();
+  void copy_points();
   void change_map();
   void move_map();
   void remove_outliers();
@@ -59,11 +66,13 @@ class FullAdjustment {
   MapMutex& map_mutex_;
   std::mutex& structure_mutex_;
   Optimizer& optimizer_;
+  const InertialHistory* inertia_ = nullptr;
   std::atomic<bool> stop_{false};
   std::atomic<bool> cancelled_{false};
   std::atomic<std::int64_t> stop_time_{0};  // [ns] of the steady clock; 0 = not requested
   BundleProblem problem_;
   std::vector<KeyFrameId> keyframes_;    // by pose
+  std::vector<std::uint8_t> is_linked_;  // by pose, whether it has an inertial factor
   std::vector<MapPointId> points_;       // by point
   std::vector<Eigen::Vector3d> before_;  // positions of the points before the adjustment
   FullAdjustmentSummary summary_;

@@ -167,6 +167,7 @@ class PipelineBuilder {
   void check_map() const;
   void check_places() const;
   void check_imu();
+  void check_factors();
   void add_diagnostic(const SourceLocation& place, std::string message);
   /// Adds a warning (core/warning.hpp) to those of the pipeline.
   void suspect(const SourceLocation& place, std::string message);

@@ -35,6 +35,9 @@ class FrameHistory {
   /// it had no pose.
   bool add_past(const Frame& frame, KeyFrameId reference, const Map& map);
 
+  /// Replaces the pose of the frame with this time stamp, which must have one.
+  void replace(double timestamp, const Eigen::Isometry3d& T_camera_world, const Map& map);
+
   /// Current pose of a tracked frame.
   struct PastPose {
     Eigen::Isometry3d T_camera_world;

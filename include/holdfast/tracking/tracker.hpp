@@ -10,6 +10,7 @@
 #include "holdfast/core/map.hpp"
 #include "holdfast/core/map_access.hpp"
 #include "holdfast/core/trajectory.hpp"
+#include "holdfast/tracking/bridge_smoothing.hpp"
 #include "holdfast/tracking/first_pose.hpp"
 #include "holdfast/tracking/frame_tracker.hpp"
 #include "holdfast/tracking/health_judge.hpp"
@@ -62,6 +63,12 @@ class Tracker {
   void forget_map(const MapAccess& map);
   /// Ends tracking: withdraws unconfirmed poses after a loss, and tracks kept frames backwards.
   void finish(const MapAccess&, StageTimes& times) { recovery_.finish(times); }
+
+  /// Estimates the poses of these frames again by the map as it is now, at the end of a run (smooth_bridges()).
+  std::size_t smooth_bridges(const MapAccess& map, std::span<const double> bridged, const InertialHistory& inertia,
+                             Optimizer& optimizer) {
+    return holdfast::smooth_bridges(context_.history, map.map(), bridged, inertia, optimizer);
+  }
 
   /// The last tracked frame, with features, matches and pose.
   const Frame& frame() const { return context_.current; }

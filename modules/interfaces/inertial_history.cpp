@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/interfaces/inertial_history.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "holdfast/core/imu_timeline.hpp"
+
+namespace holdfast {
+
+namespace {
+
+constexpr std::size_t most_samples = 240000;
+constexpr double longest_link = 5.0;  // [s]
+/// Standard deviations of the biases where a chain begins [rad/s], [m/s^2].
+constexpr double gyroscope_deviation = 0.003, accelerometer_deviation = 0.03;
+
+bool is_earlier(const ImuSample& sample, double time) { return sample.timestamp < time; }
+
+/// State of the body at a pose, in metres.
+Eigen::Isometry3d body_pose(const BundleProblem& problem, std::uint32_t pose) {
+  Eigen::Isometry3d T_world_camera = problem.poses[pose].T_camera_world.inverse();
+  T_world_camera.translation() *= problem.factors.scale;
+  return T_world_camera * problem.factors.T_body_camera.inverse();
+}
+
+/// Velocities at both ends of a motion that connect two poses.
+std::array<Eigen::Vector3d, 2> velocities(const Eigen::Isometry3d& first, const Eigen::Isometry3d& second,
+                                          const geometry::Preintegration& measured, const Eigen::Vector3d& gravity) {
+  const double time = measured.duration();
+  const geometry::InertialDelta& delta = measured.delta();
+  const Eigen::Vector3d begin =
+      (second.translation() - first.translation() - first.linear() * delta.position) / time - 0.5 * time * gravity;
+  return {begin, begin + time * gravity + first.linear() * delta.velocity};
+}
+
+/// Of a motion between frames: their time stamps scatter, cameras without a trigger and rolling shutters have no exact
+/// ones, and calibrations leave errors of the gyroscope's scale and axes (as in InertialFilter).
+geometry::Vector15d frame_variance(const geometry::Preintegration& measured, double speed) {
+  constexpr double stamp_deviation = 0.0005;  // [s], at both ends
+  constexpr double rate_error = 0.001;          // share of the rotation
+  const double angle = geometry::log_so3(measured.delta().rotation).norm(), rate = angle / measured.duration();
+  const auto square = [](double value) { return value * value; };
+  geometry::Vector15d variance = geometry::Vector15d::Zero();
+  variance.segment<3>(geometry::inertial::position).setConstant(2.0 * square(stamp_deviation * speed));
+  variance.segment<3>(geometry::inertial::rotation)
+      .setConstant(2.0 * square(stamp_deviation * rate) + square(rate_error * angle));
+  return variance;
+}
+
+BundleFactors::MotionPrior bias_prior(std::uint32_t motion, const ImuBias& bias) {
+  BundleFactors::MotionPrior prior{.motion = motion, .bias = bias, .information = {}};
+  Eigen::Matrix<double, 9, 1> information = Eigen::Matrix<double, 9, 1>::Zero();
+  information.segment<3>(3).setConstant(1.0 / (gyroscope_deviation * gyroscope_deviation));
+  information.tail<3>().setConstant(1.0 / (accelerometer_deviation * accelerometer_deviation));
+  prior.information = information.asDiagonal();
+  return prior;
+}
+
+}  // namespace
+
+void InertialHistory::add(const SensorFrame& frame) {
+  constexpr double share = 0.999;
+  const std::lock_guard lock(mutex_);
+  append_imu(samples_, frame.imu);
+  for (const ImuSample& sample : frame.imu)
+    if (sample.angular_velocity.cwiseAbs().maxCoeff() >= share * imu_.gyroscope_range ||
+        sample.acceleration.cwiseAbs().maxCoeff() >= share * imu_.accelerometer_range)
+      saturated_.push_back(sample.timestamp);
+  if (samples_.size() <= most_samples) return;
+  const auto kept = samples_.end() - static_cast<std::ptrdiff_t>(most_samples * 9 / 10);
+  std::erase_if(saturated_, [&](double time) { return time < kept->timestamp; });
+  samples_.erase(samples_.begin(), kept);
+}
+
+void InertialHistory::set_estimates(const std::optional<MapInertia>& estimates, std::uint32_t submap) {
+  const std::lock_guard lock(mutex_);
+  if (!estimates && submap == submap_) return;
+  estimates_ = estimates;
+  submap_ = submap;
+}
+
+std::optional<MapInertia> InertialHistory::estimates() const {
+  const std::lock_guard lock(mutex_);
+  return estimates_;
+}
+
+std::uint32_t InertialHistory::submap() const {
+  const std::lock_guard lock(mutex_);
+  return submap_;
+}
+
+/// A pose is measured `time_offset` after the state of the body (InertialFilter).
+std::optional<geometry::Preintegration> InertialHistory::motion_between(double begin, double end,
+                                                                        const MapInertia& estimates) const {
+  begin += estimates.time_offset, end += estimates.time_offset;
+  if (!(end - begin <= longest_link)) return std::nullopt;
+  const auto saturated = std::lower_bound(saturated_.begin(), saturated_.end(), begin);
+  if (saturated != saturated_.end() && *saturated <= end) return std::nullopt;
+  auto first = std::lower_bound(samples_.begin(), samples_.end(), begin, is_earlier);
+  if (first != samples_.begin()) --first;
+  auto last = std::lower_bound(first, samples_.end(), end, is_earlier);
+  if (last != samples_.end()) ++last;
+  std::vector<ImuSample> covered(first, last);
+  // The sample beyond the latest frame may be missing.
+  if (!covered.empty() && covered.back().timestamp < end && end - covered.back().timestamp <= 2.0 / imu_.rate) {
+    covered.push_back(covered.back());
+    covered.back().timestamp = end;
+  }
+  return geometry::preintegrate(covered, begin, end, imu_.noise, estimates.bias);
+}
+
+std::vector<InertialHistory::Link> InertialHistory::links(std::span<const double> timestamps) const {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < timestamps.size(); ++i)
+    if (!std::isnan(timestamps[i])) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return timestamps[a] < timestamps[b]; });
+  std::vector<Link> links;
+  const std::lock_guard lock(mutex_);
+  if (!estimates_) return links;
+  for (std::size_t i = 0; i + 1 < order.size(); ++i)
+    if (const auto motion = motion_between(timestamps[order[i]], timestamps[order[i + 1]], *estimates_))
+      links.push_back({order[i], order[i + 1], *motion});
+  return links;
+}
+
+std::vector<double> linkable_stamps(const Map& map, std::span<const KeyFrameId> keyframes, std::uint32_t submap) {
+  std::vector<double> timestamps;
+  for (const KeyFrameId id : keyframes) {
+    const KeyFrame& keyframe = map.keyframe(id);
+    timestamps.push_back(keyframe.submap == submap ? keyframe.frame.timestamp
+                                                   : std::numeric_limits<double>::quiet_NaN());
+  }
+  return timestamps;
+}
+
+std::vector<std::uint8_t> add_inertial_factors(BundleProblem& problem, std::span<const double> timestamps,
+                                               const InertialHistory& history) {
+  std::vector<std::uint8_t> is_linked(problem.poses.size(), 0);
+  const std::optional<MapInertia> estimates = history.estimates();
+  if (!estimates) return is_linked;
+  BundleFactors& factors = problem.factors;
+  // A pose by the nominal calibration lacks the rotation of the mounting.
+  factors.T_body_camera = Eigen::Isometry3d(estimates->mounting.transpose()) * estimates->T_body_camera;
+  factors.gravity = estimates->gravity;
+  factors.scale = estimates->scale;
+  factors.scale_fixed = history.scale_is_known();
+  std::vector<std::uint32_t> motion_of(problem.poses.size(), FactorEvaluation::none);
+  const auto motion = [&](std::size_t pose, const Eigen::Vector3d& velocity) {
+    if (motion_of[pose] == FactorEvaluation::none) {
+      motion_of[pose] = static_cast<std::uint32_t>(factors.motions.size());
+      factors.motions.push_back({static_cast<std::uint32_t>(pose), velocity, estimates->bias});
+    }
+    is_linked[pose] = 1;
+    return motion_of[pose];
+  };
+  for (const InertialHistory::Link& link : history.links(timestamps)) {
+    if (problem.poses[link.first].fixed && problem.poses[link.second].fixed) continue;
+    const auto [begin, end] =
+        velocities(body_pose(problem, static_cast<std::uint32_t>(link.first)),
+                   body_pose(problem, static_cast<std::uint32_t>(link.second)), link.measured, factors.gravity);
+    const bool begins_chain = motion_of[link.first] == FactorEvaluation::none;
+    const std::uint32_t first = motion(link.first, begin), second = motion(link.second, end);
+    factors.motions[first].velocity = begin;
+    const double way = (problem.poses[link.first].T_camera_world.inverse().translation() -
+                        problem.poses[link.second].T_camera_world.inverse().translation())
+                           .norm();
+    const double speed = factors.scale * way / link.measured.duration();
+    factors.inertial.push_back({first, second, link.measured, frame_variance(link.measured, speed)});
+    if (begins_chain) factors.motion_priors.push_back(bias_prior(first, estimates->bias));
+  }
+  return is_linked;
+}
+
+}  // namespace holdfast

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/tracking/bridge_smoothing.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <utility>
+#include <vector>
+
+namespace holdfast {
+
+namespace {
+
+constexpr double margin = 0.5;  // of tracked frames on both sides [s]
+/// Standard deviations of the poses of tracked frames [m], [rad].
+constexpr double position_deviation = 0.003, rotation_deviation = 0.002;
+
+/// A bridge with its margins: frames `begin` to `end` - 1 of a trajectory.
+struct Window {
+  std::size_t begin = 0, end = 0;
+  bool has_end = false;  ///< tracked frames follow the bridge
+};
+
+/// Bridges whose margins overlap share a window.
+std::vector<Window> find_windows(const Trajectory& trajectory, const std::vector<std::uint8_t>& is_bridged) {
+  std::vector<Window> windows;
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    if (is_bridged[i] == 0) continue;
+    std::size_t begin = i, end = i + 1;
+    while (begin > 0 && trajectory[i].timestamp - trajectory[begin - 1].timestamp <= margin) --begin;
+    while (end < trajectory.size() && trajectory[end].timestamp - trajectory[i].timestamp <= margin) ++end;
+    if (windows.empty() || windows.back().end <= begin)
+      windows.push_back({begin, end});
+    else
+      windows.back().end = end;
+    windows.back().has_end = end > i + 1 && is_bridged[end - 1] == 0;
+  }
+  return windows;
+}
+
+BundleFactors::PosePrior prior_of(std::uint32_t pose, const Eigen::Isometry3d& T_camera_world) {
+  geometry::Vector6d information;
+  information.head<3>().setConstant(1.0 / (position_deviation * position_deviation));
+  information.tail<3>().setConstant(1.0 / (rotation_deviation * rotation_deviation));
+  return {pose, T_camera_world, information.asDiagonal()};
+}
+
+}  // namespace
+
+std::size_t smooth_bridges(FrameHistory& history, const Map& map, std::span<const double> bridged,
+                           const InertialHistory& inertia, Optimizer& optimizer) {
+  const Trajectory trajectory = history.trajectory(map);
+  std::vector<std::uint8_t> is_bridged;
+  for (const TimedPose& pose : trajectory)
+    is_bridged.push_back(std::binary_search(bridged.begin(), bridged.end(), pose.timestamp) ? 1 : 0);
+  const std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
+  if (keyframes.empty() || history.main_submap(map) != inertia.submap()) return 0;
+  std::size_t count = 0;
+  for (const Window& window : find_windows(trajectory, is_bridged)) {
+    if (!window.has_end) continue;
+    BundleProblem problem;
+    problem.camera = map.keyframe(keyframes.front()).frame.camera.get();
+    std::vector<double> timestamps;
+    for (std::size_t i = window.begin; i < window.end; ++i) {
+      const Eigen::Isometry3d T_camera_world = trajectory[i].T_world_camera.inverse();
+      const auto pose = static_cast<std::uint32_t>(i - window.begin);
+      if (is_bridged[i] == 0) problem.factors.pose_priors.push_back(prior_of(pose, T_camera_world));
+      problem.poses.push_back({T_camera_world, false});
+      timestamps.push_back(trajectory[i].timestamp);
+    }
+    add_inertial_factors(problem, timestamps, inertia);
+    // A gap in the measurements would leave frames without a constraint.
+    if (problem.factors.inertial.size() + 1 != problem.poses.size()) continue;
+    if (!optimizer.optimize_bundle(problem, std::atomic<bool>(false)).usable) continue;
+    for (std::size_t i = window.begin; i < window.end; ++i) {
+      if (is_bridged[i] == 0) continue;
+      history.replace(trajectory[i].timestamp, problem.poses[i - window.begin].T_camera_world, map);
+      ++count;
+    }
+  }
+  return count;
+}
+
+}  // namespace holdfast
