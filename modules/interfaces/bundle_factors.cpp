@@ -92,8 +92,7 @@ void FactorEvaluation::add_inertial(std::uint32_t index) {
                 .has_world = true,
                 .rows = 15,
                 .root = {}};
-  geometry::Matrix15d covariance = inertial.measured.covariance();
-  covariance.diagonal() += inertial.more_variance;
+  const geometry::Matrix15d& covariance = inertial.measured.covariance();
   const Eigen::LLT<geometry::Matrix15d> cholesky(covariance);
   const bool usable = covariance.allFinite() && cholesky.info() == Eigen::Success;
   add(factor, usable ? Eigen::MatrixXd(cholesky.matrixL().solve(geometry::Matrix15d::Identity())) : Eigen::MatrixXd());

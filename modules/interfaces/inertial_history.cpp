@@ -36,20 +36,6 @@ std::array<Eigen::Vector3d, 2> velocities(const Eigen::Isometry3d& first, const 
   return {begin, begin + time * gravity + first.linear() * delta.velocity};
 }
 
-/// Of a motion between frames: their time stamps scatter, cameras without a trigger and rolling shutters have no exact
-/// ones, and calibrations leave errors of the gyroscope's scale and axes (as in InertialFilter).
-geometry::Vector15d frame_variance(const geometry::Preintegration& measured, double speed) {
-  constexpr double stamp_deviation = 0.0005;  // [s], at both ends
-  constexpr double rate_error = 0.001;          // share of the rotation
-  const double angle = geometry::log_so3(measured.delta().rotation).norm(), rate = angle / measured.duration();
-  const auto square = [](double value) { return value * value; };
-  geometry::Vector15d variance = geometry::Vector15d::Zero();
-  variance.segment<3>(geometry::inertial::position).setConstant(2.0 * square(stamp_deviation * speed));
-  variance.segment<3>(geometry::inertial::rotation)
-      .setConstant(2.0 * square(stamp_deviation * rate) + square(rate_error * angle));
-  return variance;
-}
-
 BundleFactors::MotionPrior bias_prior(std::uint32_t motion, const ImuBias& bias) {
   BundleFactors::MotionPrior prior{.motion = motion, .bias = bias, .information = {}};
   Eigen::Matrix<double, 9, 1> information = Eigen::Matrix<double, 9, 1>::Zero();
@@ -164,11 +150,7 @@ std::vector<std::uint8_t> add_inertial_factors(BundleProblem& problem, std::span
     const bool begins_chain = motion_of[link.first] == FactorEvaluation::none;
     const std::uint32_t first = motion(link.first, begin), second = motion(link.second, end);
     factors.motions[first].velocity = begin;
-    const double way = (problem.poses[link.first].T_camera_world.inverse().translation() -
-                        problem.poses[link.second].T_camera_world.inverse().translation())
-                           .norm();
-    const double speed = factors.scale * way / link.measured.duration();
-    factors.inertial.push_back({first, second, link.measured, frame_variance(link.measured, speed)});
+    factors.inertial.push_back({first, second, link.measured});
     if (begins_chain) factors.motion_priors.push_back(bias_prior(first, estimates->bias));
   }
   return is_linked;

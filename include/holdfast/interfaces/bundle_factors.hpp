@@ -34,8 +34,6 @@ struct BundleFactors {
   struct Inertial {
     std::uint32_t first = 0, second = 0;
     geometry::Preintegration measured;
-    /// Variances of the residual beside that of the measurements, such as those of time stamps and calibration.
-    geometry::Vector15d more_variance = geometry::Vector15d::Zero();
   };
   /// Relative pose, with geometry::relative_pose_residual() as its residual.
   struct RelativePose {
