@@ -18,6 +18,7 @@ such a truth, some millimetres, are larger than the standard deviations that it 
 
 Needs: Debian's python3-numpy.
 """
+import argparse
 import csv
 import os
 import sys
@@ -63,9 +64,14 @@ def add_truth(frames, truth):
         frame["truth"] = poses[nearest] if abs(stamps[nearest] - float(frame["timestamp"])) <= 0.01 else None
 
 
+def with_both(frames):
+    """Those that have a pose and a true one."""
+    return [f for f in frames if f["pose"] is not None and f["truth"] is not None]
+
+
 def alignment(frames, by_all):
     """The motion that takes estimated poses to true ones: of the first pose, or of all positions (Horn 1987)."""
-    both = [f for f in frames if f["pose"] is not None and f["truth"] is not None]
+    both = with_both(frames)
     if not by_all:
         return both[0]["truth"] @ inverse(both[0]["pose"])
     a, b = (np.array([f[name][:3, 3] for f in both]) for name in ("pose", "truth"))
@@ -94,6 +100,8 @@ def read(folder, truth=None):
     if not any(frame["truth"] is not None for frame in frames):
         sys.exit(folder + ": health.csv has no true poses; the source must have them, and the observer writes them with "
                  "truth: true")
+    if not with_both(frames):
+        sys.exit(folder + ": no frame with a true pose has an estimated one, so that there is nothing to measure")
     return frames, final
 
 
@@ -147,10 +155,7 @@ def alarms_of(frames, by_all=False):
     return errors, announced, len(false), near, len(frames), missed
 
 
-def main(folders):
-    truth = None
-    if folders[0] == "--truth":
-        truth, folders = read_truth(folders[1]), folders[2:]
+def main(folders, truth):
     by_frame, everything, totals = {}, [], np.zeros(5, int)
     print("%-32s %6s %8s %8s   %s" % ("recording", "NEES", "errors", "announced", "false alarms"))
     for folder in folders:
@@ -182,6 +187,8 @@ def main(folders):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < (4 if "--truth" in sys.argv else 2):
-        sys.exit(__doc__)
-    main(sys.argv[1:])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--truth", type=read_truth, metavar="groundtruth.txt", help="trajectory in TUM format")
+    parser.add_argument("runs", nargs="+", metavar="RUN", help="folder of a run with the observer health")
+    arguments = parser.parse_args()
+    main(arguments.runs, arguments.truth)

@@ -55,6 +55,18 @@ const Parameters& checked(const Parameters& given) {
   return given;
 }
 
+/// While it lives, observers do not wait for somebody, such as a browser, because their session is to end.
+class EndWish {
+ public:
+  explicit EndWish(std::atomic<int>& count) : count_(count) { ++count_; }
+  ~EndWish() { --count_; }
+  EndWish(const EndWish&) = delete;
+  EndWish& operator=(const EndWish&) = delete;
+
+ private:
+  std::atomic<int>& count_;
+};
+
 }  // namespace
 
 /// The members above the threads are used by several of them: those with a mutex beside them are guarded by it.
@@ -80,7 +92,8 @@ struct Bridge::State {
       is_stopped = true;
     }
     map_changed.notify_all();
-    end_waiting();
+    ++ends_wanted;
+    interrupt_session();
     frame_thread.join();
     map_thread.join();
   }
@@ -109,18 +122,16 @@ struct Bridge::State {
   void begin_with(const std::string& file, bool localises);
   /// Any other thread: lets the thread of the frames call begin_with(), also where a session waits for somebody.
   void request_begin_with(const std::string& file, bool localises) {
-    end_waiting();
-    try {
-      frames.request([&] { begin_with(file, localises); });
-    } catch (...) {
-      --ends_wanted;
-      throw;
-    }
-    --ends_wanted;
+    std::optional<EndWish> wish(std::in_place, ends_wanted);
+    interrupt_session();
+    // The wish ends in that thread: the session that begins next is not to be interrupted.
+    frames.request([&] {
+      wish.reset();
+      begin_with(file, localises);
+    });
   }
-  /// The observers of this session, and of one that begins meanwhile, do not wait for somebody, such as a browser.
-  void end_waiting() {
-    ++ends_wanted;
+  /// With ends_wanted above 0, so that the observers of a session that begins meanwhile do not wait either.
+  void interrupt_session() {
     if (const SessionPointer current = session_now()) current->pipeline().interrupt();
   }
   std::vector<ImuSample> take_inertia(const ImageSet& frame);

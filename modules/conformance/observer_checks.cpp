@@ -96,6 +96,7 @@ void instances_do_not_meet(const Maker& maker) {
 void lives_through_interrupts(const Maker& maker) {
   FilterScene scene(standard_camera());
   const auto observer = maker.make<Observer>();
+  static_assert(noexcept(observer->interrupt()), "it is called where nobody could catch an exception");
   run_side_by_side([&] { show_run(*observer, scene, TrackingStatus::tracked); },
                    [&] {
                      for (int i = 0; i < 100; ++i) observer->interrupt();

@@ -109,7 +109,7 @@ class Waiting final : public Observer {
     if (!std::exchange(has_waited_, true)) waits_.set_value();
     interrupted_.get_future().wait();
   }
-  void interrupt() override {
+  void interrupt() noexcept override {
     if (!was_interrupted_.exchange(true)) interrupted_.set_value();
   }
 

@@ -5,8 +5,11 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "holdfast/plugin/registry.hpp"
 #include "sources/recording.hpp"
 #include "support/bag_writer.hpp"
+
+extern "C" void holdfast_register_plugin_rosbag(holdfast::Registry& registry);
 
 namespace holdfast {
 namespace {
@@ -221,7 +224,8 @@ constexpr const char* right_image = "/stereo/right/image_rect";
 constexpr const char* left_info = "/stereo/left/camera_info";
 
 /// Pairs whose right image comes so much later [ns]; `x` is the fourth number of P of the right camera.
-std::string stereo_bag(double x, std::uint64_t later = 0, double right_fx = 50.0) {
+std::string stereo_bag(double x, std::uint64_t later = 0, double right_fx = 50.0,
+                       const char* right_topic = right_image) {
   BagWriter bag;
   const auto info = [](double fx, double fourth) {
     return camera_info_message(colour_stamp(0), 64, 48, "plumb_bob", {0.1, -0.2, 0.003, 0.004, 0.5},
@@ -231,7 +235,7 @@ std::string stereo_bag(double x, std::uint64_t later = 0, double right_fx = 50.0
     bag.add(left_info, camera_info, received(i), info(50.0, 0.0));
     bag.add("/stereo/right/camera_info", camera_info, received(i), info(right_fx, x));
     bag.add(left_image, image, received(i), colour_message(i));
-    bag.add(right_image, image, received(i) + 1000,
+    bag.add(right_topic, image, received(i) + 1000,
             image_message(colour_stamp(i) + later, "bgr8", colour_pixels(i + 10)));
   }
   return bag.finish();
@@ -257,13 +261,46 @@ TEST_F(RosbagTest, ReadsStereoPairs) {
   EXPECT_THAT(error(stereo_bag(-6.0, 1'100'000), right), HasSubstr("no left and right image lie within 0.001000 s"));
   EXPECT_THAT(error(stereo_bag(6.0), right), HasSubstr("has no baseline: the fourth number of P is 6.0"));
   EXPECT_THAT(error(stereo_bag(-6.0, 0, 51.0), right), HasSubstr("are not of a rectified pair"));
+  const char* raw = "/stereo/right/image_raw";
   ParameterValues values = right;
+  values["right"] = std::string(raw);
+  EXPECT_THAT(error(stereo_bag(-6.0, 0, 50.0, raw), values),
+              HasSubstr("'/stereo/left/image_rect' and '/stereo/right/image_raw' are not of a rectified pair"));
+  values = right;
   values["depth"] = std::string(depth_topic);
   EXPECT_THAT(error(stereo_bag(-6.0), values), HasSubstr("with depth and with a right camera"));
   values = {{"right", std::string(right_image)}, {"colour", std::string(right_image)}};
   EXPECT_THAT(error(stereo_bag(-6.0), values), HasSubstr("the same images on the left and on the right"));
   EXPECT_FALSE(open(stereo_bag(0.0), {{"right", std::string(right_image)}})->describe().camera)
       << "the configuration has one, with the baseline";
+}
+
+TEST_F(RosbagTest, ABaselineOfTheConfigurationIsThatOfTheBag) {
+  Registry registry;
+  holdfast_register_plugin_rosbag(registry);
+  ParameterValues values = {{"path", folder_.write("recording.bag", stereo_bag(-6.0))},
+                            {"right", std::string(right_image)}};
+  CreationContext context;
+  context.camera.width = 64, context.camera.height = 48;
+  const auto refused = [&] { return input_error([&] { registry.create<FrameSource>("rosbag", values, context); }); };
+  const auto is_told = AllOf(HasSubstr("'/stereo/right/camera_info' tells a baseline of 0.120000 m"),
+                             HasSubstr("write `baseline: 0.120000` under `camera:`"));
+  EXPECT_THAT(refused(), AllOf(is_told, HasSubstr("one of 0.080000 m, which is the default")));
+  context.camera.baseline = 0.2;
+  EXPECT_THAT(refused(), AllOf(is_told, HasSubstr("one of 0.200000 m;")));
+  context.camera.baseline = 0.1199;
+  EXPECT_FALSE(registry.create<FrameSource>("rosbag", values, context)->describe().camera);
+  context.camera.baseline = 0.2;
+  context.sensor = Sensor::mono;
+  EXPECT_NO_THROW(registry.create<FrameSource>("rosbag", values, context));
+  context.sensor = {};
+
+  values["camera_info"] = std::string(left_info);  // whose camera is used
+  EXPECT_THAT(refused(), is_told);
+  context.camera.baseline = Camera().baseline;
+  EXPECT_DOUBLE_EQ(registry.create<FrameSource>("rosbag", values, context)->describe().camera->baseline, 0.12);
+  values["camera_info"] = std::string("none");
+  EXPECT_NO_THROW(registry.create<FrameSource>("rosbag", values, context));
 }
 
 TEST_F(RosbagTest, SaysWhatThereIsToChooseFrom) {

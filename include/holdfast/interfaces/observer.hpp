@@ -59,7 +59,8 @@ struct ObservedSurface {
 
 /// Observes a run. Every method does nothing unless overridden. In sequential mode the thread that feeds frames calls
 /// all of them; arguments are valid during the call only. No lock is held during a call: a slow observer delays the
-/// thread that calls it, and no other. An exception ends the run; feed() or finish() throws it.
+/// thread that calls it, and no other. An exception ends the run, and feed() or finish() throws it; interrupt() throws
+/// none.
 class Observer : public Module {
  public:
   static constexpr const char* kind = "observers";
@@ -82,8 +83,9 @@ class Observer : public Module {
   /// Once at the end of the run, when all threads have ended, by the thread that calls finish().
   virtual void on_finish(const Map&) {}
   /// When the run is interrupted (Pipeline::interrupt()), by any thread, also during another call, and more than once:
-  /// an observer that waits for somebody, such as a browser, goes on and does not wait again.
-  virtual void interrupt() {}
+  /// an observer that waits for somebody, such as a browser, goes on and does not wait again. Must not throw: it is
+  /// called where nobody could catch an exception, such as in a std::stop_callback.
+  virtual void interrupt() noexcept {}
 };
 
 }  // namespace holdfast

@@ -120,8 +120,9 @@ class Pipeline {
   /// has grown since the last loop (unless interrupted), and notifies the observers. feed() must not be called
   /// afterwards. Rethrows exceptions of the pipeline's threads.
   void finish();
-  /// Requests running bundle adjustments to end after their current iteration, and observers that wait for somebody to
-  /// go on (Observer::interrupt()). Any thread, also during feed().
+  /// Ends running bundle adjustments after their current iteration, and the waits of observers (Observer::interrupt()),
+  /// both for the rest of the run: a viewer no longer pauses, and finish() does not adjust again. Any thread, also
+  /// during feed().
   void interrupt();
 
   /// Health of the last frame, as a robot acts on it, and whether frames still arrive: the state is stalled if there

@@ -105,7 +105,7 @@ class Foxglove final : public Observer {
   }
 
   void on_finish(const Map& map) override { messages_.add_map(make_snapshot(map), last_time()); }
-  void interrupt() override { is_interrupted_ = true; }
+  void interrupt() noexcept override { is_interrupted_ = true; }
 
  private:
   double last_time() const {

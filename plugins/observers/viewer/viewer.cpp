@@ -71,7 +71,7 @@ class ViewerObserver final : public Observer {
     viewer_->add_point_classes(std::move(classes));
     viewer_->set_map(make_snapshot(map), 0.0);
   }
-  void interrupt() override { viewer_->stop_waiting(); }
+  void interrupt() noexcept override { viewer_->stop_waiting(); }
 
  private:
   /// Of a keyframe for the dense cloud: every fourth pixel of a kept image of 320x240.

@@ -302,15 +302,22 @@ Camera read_camera_info(const Message& message, bool is_rectified) {
   return camera;
 }
 
+std::optional<double> read_baseline(const Message& message) {
+  const InfoFields fields = read_info_fields(message);
+  const double baseline = -fields.p[3] / fields.p[0];
+  if (!(fields.p[0] > 0.0) || !(baseline > 0.0) || !std::isfinite(baseline)) return std::nullopt;
+  return baseline;
+}
+
 Camera read_right_camera_info(const Message& message) {
   Camera camera = read_camera_info(message, true);
-  const InfoFields fields = read_info_fields(message);
-  camera.baseline = -fields.p[3] / fields.p[0];
-  if (!(camera.baseline > 0.0) || !std::isfinite(camera.baseline))
+  const std::optional<double> baseline = read_baseline(message);
+  if (!baseline)
     refuse(message.place,
-           "has no baseline: the fourth number of P is " + std::to_string(fields.p[3]) +
+           "has no baseline: the fourth number of P is " + std::to_string(read_info_fields(message).p[3]) +
                ", but is negative for the right camera of a rectified pair; exchange `source.rosbag.colour` and "
                "`source.rosbag.right`, or give camera and baseline under `camera:` and `camera_info: none`");
+  camera.baseline = *baseline;
   return camera;
 }
 

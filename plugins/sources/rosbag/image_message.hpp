@@ -2,6 +2,7 @@
 #pragma once
 
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
 
 #include "holdfast/core/camera.hpp"
@@ -42,6 +43,8 @@ class ImageMessages {
 /// rectified image, by the projection matrix P and without distortion. Throws InputError for another model and for
 /// numbers that cannot be.
 Camera read_camera_info(const Message& message, bool is_rectified);
+/// The baseline that the CameraInfo of the right camera of a rectified pair has [m]; nothing if it has none.
+std::optional<double> read_baseline(const Message& message);
 /// The camera of the rectified pair whose right one this CameraInfo is of: that of its projection matrix, which has the
 /// baseline. Throws InputError as read_camera_info() does, and for one without a baseline.
 Camera read_right_camera_info(const Message& message);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -168,6 +169,7 @@ class RosbagSource final : public FrameSource {
       description_.camera = read_camera();
       size_ = {description_.camera->width, description_.camera->height};
     }
+    if (description_.has_right && camera_is_given && context.sensor != Sensor::mono) check_baseline(context.camera);
     if (is_realsense_stream(topics_.depth.name, "Depth"))
       register_depth(description_.camera ? *description_.camera : context.camera);
     if (!settings.truth.empty()) truth_ = read_trajectory(settings.truth);
@@ -214,26 +216,43 @@ class RosbagSource final : public FrameSource {
   Camera read_camera() {
     const BagMessage message = bag_->messages(topics_.camera_info.name).front();
     Camera camera = read_camera_info(bag_->content(message), is_rectified(topics_.colour.name));
-    if (description_.has_right) camera.baseline = read_baseline(camera);
+    if (description_.has_right) camera.baseline = baseline_of_pair(camera);
     return camera;
   }
   /// Fails for a pair that is not rectified.
-  double read_baseline(const Camera& left) {
+  double baseline_of_pair(const Camera& left) {
     const std::string& name = topics_.right_camera_info.name;
     if (name.empty())
       throw InputError({settings_.path.string()},
                        "has no camera_info beside '" + topics_.right.name +
                            "', which tells the baseline; give camera and baseline under `camera:`");
-    Camera right = read_right_camera_info(bag_->content(bag_->messages(name).front()));
-    right.name = left.name;
+    const Message info = bag_->content(bag_->messages(name).front());
+    Camera right = read_right_camera_info(info);
     const double baseline = std::exchange(right.baseline, left.baseline);
-    if (!(right == left))
+    // The projection matrix is that of rectified images, which those of this topic need not be.
+    if (!(right == left) || !(read_camera_info(info, is_rectified(topics_.right.name)) == left))
       throw InputError(
           {settings_.path.string()},
           "the images of '" + topics_.colour.name + "' and '" + topics_.right.name +
               "' are not of a rectified pair: their camera_info differ in more than the baseline, or have a "
               "distortion; record the topics image_rect of stereo_image_proc");
     return baseline;
+  }
+  /// Fails for a configured camera, given or by default, whose baseline is not that of the bag, if the bag tells one.
+  void check_baseline(const Camera& given) {
+    const std::string& name = topics_.right_camera_info.name;
+    const bool is_used = !description_.camera;
+    if (name.empty() || (!is_used && given.baseline == Camera().baseline)) return;
+    const std::optional<double> told = read_baseline(bag_->content(bag_->messages(name).front()));
+    constexpr double rounding = 0.01;
+    if (!told || std::abs(given.baseline - *told) <= rounding * *told) return;
+    throw InputError(
+        {settings_.path.string()},
+        "'" + name + "' tells a baseline of " + std::to_string(*told) + " m, but the configuration has one of " +
+            std::to_string(given.baseline) + " m" +
+            (given.baseline == Camera().baseline ? ", which is the default where `camera:` gives none" : "") +
+            "; write `baseline: " + std::to_string(*told) +
+            "` under `camera:`, or `source.rosbag.camera_info: none` if the bag is wrong");
   }
   void register_depth(const Camera& colour) {
     const RealsenseDepth depth = read_realsense_depth(*bag_, topics_.colour.name, topics_.depth.name);
