@@ -45,8 +45,9 @@ Definitions
   F-score           harmonic mean of both
   Chamfer           mean of accuracy and completion
   ghosts            share of the estimate farther than --ghost-distance from the truth
-  thickness         with --thickness: distance of the outermost of several estimated surfaces along the normal of one
-                    true one, at most so far from it: that of walls which a drift has doubled
+  thickness         with --thickness: distance between the outermost estimated surfaces along the normal of the truth,
+                    searched up to that distance on both sides; above 0 where drift doubled a wall. Of the places at
+                    which one true surface and an estimated one face the same side
 Distances are exact, from points with a distance of --spacing on one surface to the triangles of the other.
 
 Both meshes must be in one world frame, unless the trajectories in both frames are given: the rigid motion that

@@ -4,8 +4,6 @@
 #include <cstdint>
 #include <cstring>
 
-/// Eight numbers at once, on which the compiler works with the instructions of the function into which a kernel is
-/// inlined.
 #define HOLDFAST_INLINE __attribute__((always_inline)) static inline
 
 #if defined(__GNUC__) && !defined(__clang__)
@@ -15,6 +13,8 @@
 
 namespace holdfast::surface {
 
+/// Eight numbers at once, on which the compiler works with the instructions of the function into which a kernel is
+/// inlined.
 using Float8 = float __attribute__((vector_size(32)));
 using Int8 = std::int32_t __attribute__((vector_size(32)));
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -94,14 +95,18 @@ void measure_thickness(const TriangleMesh& truth, const TriangleMesh& seen, cons
   std::size_t doubled = 0;
   for (const SurfacePoint& point : points_on(seen, result.options.spacing)) {
     const Eigen::Vector3d normal = seen.area_vector(point.triangle).normalized();
-    // The outermost surfaces may lie twice as far apart as the truth reaches.
+    // Two estimated surfaces may be 2 * reach apart, so the truth must be single over that range.
     if (layers(truth_tree, truth, point.position, normal, 2.0 * reach).size() > 1) continue;
     const std::vector<double> found = layers(tree, estimate, point.position, normal, reach);
     if (found.empty()) continue;
     all.push_back(found.back() - found.front());
     doubled += found.size() > 1 ? 1 : 0;
   }
-  if (all.empty()) return;
+  result.thickness_points = all.size();
+  if (all.empty()) {
+    result.thickness_mean = result.thickness_99 = result.doubled = std::numeric_limits<double>::quiet_NaN();
+    return;
+  }
   const auto count = static_cast<double>(all.size());
   for (const double thickness : all) result.thickness_mean += thickness / count;
   const auto place = all.begin() + static_cast<std::ptrdiff_t>(0.99 * (count - 1.0));
@@ -135,7 +140,8 @@ std::vector<std::pair<const char*, double>> figures(const SurfaceEvaluation& e) 
     for (const auto& [name, value] : {std::pair{"thickness_reach", e.options.thickness_reach},
                                       {"thickness_mean", e.thickness_mean},
                                       {"thickness_99", e.thickness_99},
-                                      {"doubled", e.doubled}})
+                                      {"doubled", e.doubled},
+                                      {"thickness_points", static_cast<double>(e.thickness_points)}})
       values.emplace_back(name, value);
   return values;
 }
@@ -196,9 +202,11 @@ std::string to_text(const SurfaceEvaluation& e) {
   add("normals     %.3f mean cosine\n", e.normal_agreement);
   add("ghosts      %.3f %% of the estimate is farther than %.3g cm from the truth\n", 100 * e.ghosts,
       100 * e.options.ghost_distance);
-  if (e.options.thickness_reach > 0.0)
-    add("thickness   %.2f cm mean, %.2f cm at 99 %%; %.2f %% of the truth has two surfaces\n", 100 * e.thickness_mean,
-        100 * e.thickness_99, 100 * e.doubled);
+  if (e.thickness_points > 0)
+    add("thickness   %.2f cm mean, %.2f cm at 99 %%; %.2f %% of the %zu places compared have two surfaces\n",
+        100 * e.thickness_mean, 100 * e.thickness_99, 100 * e.doubled, e.thickness_points);
+  else if (e.options.thickness_reach > 0.0)
+    add("thickness   not measured: no place has one true and one estimated surface that face the same side\n");
   return text;
 }
 

@@ -21,7 +21,7 @@ void SurfaceSettings::describe(ParameterTable<SurfaceSettings>& table) {
   table.add("maximum_depth", &S::maximum_depth, "larger depths are not fused; they are too noisy")
       .range(0.1, 16)
       .unit("m");
-  table.add("minimum_views", &S::minimum_views, "minimum number of keyframes that observe the surface at a voxel")
+  table.add("minimum_views", &S::minimum_views, "minimum number of fused views that observe the surface at a voxel")
       .range(1, 100);
   table.add("smallest_part", &S::smallest_part, "connected parts of the mesh with a smaller area are left out")
       .range(0, 100)
@@ -34,7 +34,8 @@ void SurfaceSettings::describe(ParameterTable<SurfaceSettings>& table) {
   table
       .add("interval", &S::interval,
            "time between frames that are fused beside the keyframes, with the masks that were propagated to them: they "
-           "see more and average the sensor's noise; 0: keyframes alone are fused")
+           "see more and average the sensor's noise. They count for `minimum_views`, and at most `dense_map.keyframes` "
+           "of them are kept, which doubles the memory of the images; 0: keyframes alone are fused")
       .range(0, 60)
       .unit("s");
   table
@@ -48,10 +49,9 @@ void SurfaceSettings::describe(ParameterTable<SurfaceSettings>& table) {
            "maximum number of keyframes that are fused again at their adjusted pose with each new keyframe; at the end "
            "of a run all are")
       .range(0, 1000);
-  table.add(
-      "poses", &S::poses,
-      "align the depth of frames that features do not hold with the surface; without features such poses last for "
-      "`tracking.depth_only_time`");
+  table.add("poses", &S::poses,
+            "align the depth of frames that cannot be tracked by features with the surface; used for at most "
+            "`tracking.depth_only_time` without features, and not while the surface waits for corrections of the map");
   table.add("formats", &S::formats, "files to write: ply (surface.ply), obj, glb (binary glTF 2.0)");
   table
       .add("triangles", &S::triangles,
@@ -64,9 +64,8 @@ void SurfaceSettings::describe(ParameterTable<SurfaceSettings>& table) {
   table.add("class_colours", &S::class_colours,
             "the files have the colours of classes in place of those of the images; needs `classes`");
   table.add("keep_depth", &S::keep_depth,
-            "keep the fused depth and colour in the folder surface_views beside map.hfm, about 0.3 MB per keyframe, "
-            "from which "
-            "`holdfast map export --mesh` makes meshes later");
+            "keep the fused depth and colour in the folder surface_views beside map.hfm, about 0.3 MB per fused view, "
+            "from which `holdfast map export --mesh` makes meshes later");
   table.add("navigation", &S::navigation,
             "also write maps for navigation: map.pgm and map.yaml for ROS's map_server, octomap.bt, octomap.ot");
   table.add("cell", &S::cell, "side of a cell of these maps").range(0.01, 1).unit("m");

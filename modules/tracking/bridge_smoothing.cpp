@@ -10,7 +10,7 @@ namespace holdfast {
 
 namespace {
 
-constexpr double context_time = 0.5;  // of tracked frames on both sides [s]
+constexpr double margin_seconds = 0.5;  // of tracked frames on both sides [s]
 /// Standard deviations of the poses of tracked frames [m], [rad].
 constexpr double position_deviation = 0.003, rotation_deviation = 0.002;
 
@@ -26,8 +26,8 @@ std::vector<Window> find_windows(const Trajectory& trajectory, const std::vector
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     if (is_bridged[i] == 0) continue;
     std::size_t begin = i, end = i + 1;
-    while (begin > 0 && trajectory[i].timestamp - trajectory[begin - 1].timestamp <= context_time) --begin;
-    while (end < trajectory.size() && trajectory[end].timestamp - trajectory[i].timestamp <= context_time) ++end;
+    while (begin > 0 && trajectory[i].timestamp - trajectory[begin - 1].timestamp <= margin_seconds) --begin;
+    while (end < trajectory.size() && trajectory[end].timestamp - trajectory[i].timestamp <= margin_seconds) ++end;
     if (windows.empty() || windows.back().end <= begin)
       windows.push_back({begin, end});
     else

@@ -93,9 +93,23 @@ TEST(SurfaceEvaluation, MeasuresTheThicknessOfADoubledWall) {
   EXPECT_NEAR(result.thickness_mean, 0.25 * 0.06, 5e-4);
   EXPECT_NEAR(result.thickness_99, 0.06, 1e-6);
   EXPECT_THAT(to_text(result), testing::HasSubstr("thickness   1.50 cm mean, 6.00 cm at 99 %; 25.0"));
+  EXPECT_THAT(to_text(result),
+              testing::HasSubstr("of the " + std::to_string(result.thickness_points) + " places compared"));
   EXPECT_THAT(to_json(result), testing::HasSubstr("\"doubled\": 0.25"));
   append(truth, double_part);
   EXPECT_EQ(evaluate_surface(truth, truth, estimate, options).doubled, 0.0);
+}
+
+TEST(SurfaceEvaluation, SaysThatNoThicknessWasMeasured) {
+  const TriangleMesh truth = floor_at(0.0, 10);
+  TriangleMesh estimate = truth;  // of the other winding
+  for (auto& t : estimate.triangles) std::swap(t[1], t[2]);
+  SurfaceEvaluationOptions options;
+  options.thickness_reach = 0.1;
+  const SurfaceEvaluation result = evaluate_surface(truth, truth, estimate, options);
+  EXPECT_EQ(result.thickness_points, 0U);
+  EXPECT_THAT(to_text(result), testing::HasSubstr("thickness   not measured"));
+  EXPECT_THAT(to_json(result), testing::HasSubstr("\"thickness_mean\": null"));
 }
 
 TEST(SurfaceEvaluation, RefusesMeshesWithoutArea) {

@@ -12,7 +12,8 @@
 namespace holdfast {
 
 /// Images of frames between keyframes that a surface is fused from as well: they see what no keyframe sees, and average
-/// the noise of the sensor. Their masks are those that were propagated to them. Used by one thread.
+/// the noise of the sensor. Their masks are those that were propagated to them. A view takes 384 kB, or 461 kB with
+/// labels, at 640x480 and a step of 2: as many as keyframes double the memory of the images. Used by one thread.
 class FusedFrames {
  public:
   /// At most `max_count` views, at least `interval` [s] apart; above it, the view without which the gap in time is

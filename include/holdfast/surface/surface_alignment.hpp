@@ -12,8 +12,8 @@ namespace holdfast {
 
 /// Aligns the coarse depth of a frame with a field: the pose T_view_world that minimises the squared distances of the
 /// measured points by the field, by Gauss-Newton on the field's gradient (Bylow et al., RSS 2013, equations 14 to 20),
-/// with the weights of static depth alone, Huber's cost, and the predicted pose as initial value and as a prior for
-/// directions that the surface leaves open.
+/// with Huber's cost over the deviation of the depth (depth_noise::alignment_deviation()), and the predicted pose as
+/// initial value and as a prior for directions that the surface leaves open.
 ///
 /// Cells that move by CoarseView::static_log_odds do not count, nor do those farther from the surface than its
 /// truncation: people before it. Empty unless enough cells lie on the surface, and most of those near it.

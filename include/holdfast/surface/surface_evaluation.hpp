@@ -30,10 +30,11 @@ struct SurfaceEvaluation {
   double normal_agreement = 0.0;   ///< mean absolute cosine of the angle between the normals, within the threshold
   double ghosts = 0.0;             ///< share of the estimate farther from the truth than ghost_distance, 0 to 1
   /// Distance between the outermost of the estimated surfaces that lie along the normal of the truth within
-  /// thickness_reach, and face the same side: 0 = one surface. Of points of `seen` at which the truth has one surface,
-  /// and the estimate has one at least [m].
+  /// thickness_reach, and face the same side: 0 = one surface. Of the thickness_points points of `seen` at which the
+  /// truth has one surface, and the estimate has one at least [m]; NaN if there are none.
   double thickness_mean = 0.0, thickness_99 = 0.0;
-  double doubled = 0.0;  ///< share of these points at which there are two surfaces or more, 0 to 1
+  double doubled = 0.0;  ///< share of these points at which there are two surfaces or more, 0 to 1; NaN without them
+  std::size_t thickness_points = 0;
   double truth_area = 0.0, estimate_area = 0.0;  ///< [m^2]
   std::size_t truth_points = 0, estimate_points = 0;
   SurfaceEvaluationOptions options;
