@@ -10,6 +10,22 @@
 
 namespace holdfast {
 
+namespace {
+
+/// Releases a mutex that the thread has locked.
+class HOLDFAST_SCOPED_CAPABILITY AdoptedLock {
+ public:
+  explicit AdoptedLock(Mutex& mutex) HOLDFAST_REQUIRES(mutex) : mutex_(mutex) {}
+  ~AdoptedLock() HOLDFAST_RELEASE() { mutex_.unlock(); }
+  AdoptedLock(const AdoptedLock&) = delete;
+  AdoptedLock& operator=(const AdoptedLock&) = delete;
+
+ private:
+  Mutex& mutex_;
+};
+
+}  // namespace
+
 KeyframeFlow::KeyframeFlow(PipelineParts& parts, GuardedMap& map, MovingWorld& moving_world,
                            SharedLoopDetector& detector)
     : parts_(parts),
@@ -127,7 +143,7 @@ void KeyframeFlow::request_mask(const SensorFrame& sensor_frame, const Frame& fr
                                 const FrameResult& result, StageTimes& times) {
   const KeyFrameId keyframe = result.is_keyframe ? result.keyframe : KeyFrameId();
   const bool is_requested = moving_world_.request_mask(sensor_frame, keyframe, times, is_needed);
-  keep_for_surface(sensor_frame, frame, result);
+  keep_for_surface(sensor_frame, frame, result, times);
   if (!result.is_keyframe) return;
   if (is_requested) {
     // One camera makes all its points by triangulation, and would be lost before the mask arrives: a propagated mask
@@ -229,6 +245,7 @@ bool KeyframeFlow::close_loops(const LoopJob& job, StageTimes& times) {
     record_without_loop(job);
     return false;
   }
+  ++corrections_;
   record_loop(*loop);
   return parts_.loop_closing.full_adjustment;
 }
@@ -262,6 +279,7 @@ void KeyframeFlow::record_loop(const ClosedLoop& loop) {
 void KeyframeFlow::adjust_map(StageTimes& times) {
   const StageTimer timer(times, "loops: full adjustment");
   const FullAdjustmentSummary summary = adjustment_.run();
+  ++corrections_;
   const MutexLock lock(record_mutex_);
   loop_record_.adjustments.push_back(summary);
 }
@@ -276,7 +294,8 @@ const KeptView* KeyframeFlow::keep_view(KeyFrameId keyframe, const SensorFrame& 
   return &scene_->add(keyframe, frame, released, labels, left_out_);
 }
 
-void KeyframeFlow::keep_for_surface(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result) {
+void KeyframeFlow::keep_for_surface(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result,
+                                    StageTimes& times) {
   if (resting_) resting_->add(frame, result);
   if (result.is_keyframe) {
     if (carving_) carving_->keyframe_kept(frame.timestamp);
@@ -286,9 +305,13 @@ void KeyframeFlow::keep_for_surface(const SensorFrame& sensor_frame, const Frame
   if (result.status != TrackingStatus::tracked || result.fallback != TrackingFallback::none) return;
   const bool is_fused = fused_frames_ && fused_frames_->is_due(frame.timestamp);
   if (!is_fused && !(carving_ && carving_->is_due(frame.timestamp))) return;
-  const LockedMap map(map_, LockPriority::tracking);
-  if (!map->submap_of(result.keyframe)) return;
-  const Eigen::Isometry3d T_keyframe_world = map->pose_of(result.keyframe);
+  Eigen::Isometry3d T_keyframe_world;
+  {
+    const LockedMap map(map_, LockPriority::tracking);
+    if (!map->submap_of(result.keyframe)) return;
+    T_keyframe_world = map->pose_of(result.keyframe);
+  }
+  const StageTimer timer(times, "dense map: keep");
   if (!is_fused) return carving_->add(frame, result.keyframe, T_keyframe_world);
   fused_frames_->add(sensor_frame, frame, result.keyframe, T_keyframe_world, left_out_);
   if (carving_) carving_->keyframe_kept(frame.timestamp);
@@ -319,6 +342,7 @@ void KeyframeFlow::fuse(std::vector<KeptView> views, std::size_t max_moves, Stag
   std::optional<StageTimer> timer;
   timer.emplace(times, "surface");
   std::vector<Eigen::Isometry3d> poses;
+  const std::uint64_t corrections = corrections_;  // which the poses have
   {
     const LockedMap map(map_, LockPriority::background);
     // The map of a view may have been removed since.
@@ -327,7 +351,8 @@ void KeyframeFlow::fuse(std::vector<KeptView> views, std::size_t max_moves, Stag
   }
   {
     const MutexLock lock(surface_mutex_);
-    surface_->update(views, poses, max_moves);
+    const std::size_t waiting = surface_->update(views, poses, max_moves);
+    fused_corrections_ = waiting == 0 ? std::optional(corrections) : std::nullopt;
     free_space_.reset();
   }
   timer.reset();
@@ -362,9 +387,11 @@ std::optional<Eigen::Isometry3d> KeyframeFlow::align_with_surface(const Frame& f
     surface_mutex_.lock();
   else if (!surface_mutex_.try_lock())
     return std::nullopt;
+  const AdoptedLock lock(surface_mutex_);
+  // At the views' old poses it would hold the frame where the map was before.
+  if (fused_corrections_ != corrections_.load()) return std::nullopt;
   const auto T_view_world = holdfast::align_with_surface(surface_->field(), frame.coarse, *frame.camera,
                                                          frame.coarse.T_view_world(predicted));
-  surface_mutex_.unlock();
   if (!T_view_world) return std::nullopt;
   return frame.coarse.T_view_camera.inverse() * *T_view_world;
 }

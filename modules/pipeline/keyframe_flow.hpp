@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <opencv2/core.hpp>
@@ -105,7 +106,8 @@ class KeyframeFlow {
   /// See Pipeline::free_space().
   std::shared_ptr<const FreeSpace> free_space() const HOLDFAST_EXCLUDES(surface_mutex_);
   /// T_camera_world of a frame by the surface as fused so far, from its predicted value; empty if its depth does not
-  /// determine it, and in threaded mode while another thread uses the surface.
+  /// determine it, while views wait to be fused at their corrected poses, and in threaded mode while another thread
+  /// uses the surface.
   std::optional<Eigen::Isometry3d> align_with_surface(const Frame& frame, const Eigen::Isometry3d& predicted,
                                                       StageTimes& times) const HOLDFAST_EXCLUDES(surface_mutex_);
   /// See Pipeline::with_surface().
@@ -153,8 +155,8 @@ class KeyframeFlow {
   const KeptView* keep_view(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse,
                             const cv::Mat& labels, StageTimes& times);
   /// Keeps a frame between keyframes if the surface is to be fused from it, or carved by its coarse depth.
-  void keep_for_surface(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result)
-      HOLDFAST_EXCLUDES(map_);
+  void keep_for_surface(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result,
+                        StageTimes& times) HOLDFAST_EXCLUDES(map_);
   /// What the surface is made of: kept views and those that only carve, by increasing frame index.
   std::vector<KeptView> views_of_surface() const;
   /// Adds a kept view to the surface, if there are both.
@@ -185,7 +187,10 @@ class KeyframeFlow {
   std::optional<FusedFrames> fused_frames_;
   std::optional<RestingCells> resting_;
   mutable Mutex surface_mutex_;
-  std::optional<SurfaceMap> surface_;  // changes with the mutex held
+  std::optional<SurfaceMap> surface_;           // changes with the mutex held
+  std::atomic<std::uint64_t> corrections_ = 0;  // of the map, by loops and full adjustments
+  /// Those that every view of the surface has; empty while views wait to be moved.
+  std::optional<std::uint64_t> fused_corrections_ HOLDFAST_GUARDED_BY(surface_mutex_);
   mutable std::shared_ptr<const FreeSpace> free_space_ HOLDFAST_GUARDED_BY(surface_mutex_);  // nullptr if outdated
   std::vector<bool> left_out_;      // of the static scene, by label
   std::deque<MappingJob> waiting_;  // they have their masks, but mapping had no room

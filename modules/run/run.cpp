@@ -101,13 +101,11 @@ void record_surface(const SurfaceMap& surface, const std::vector<std::string>& c
   if (record.surface->empty())
     add_warning(record.warnings,
                 {{},
-                 "the surface is empty, and no mesh is written: " + counted(surface.keyframe_count(), "keyframe") +
+                 "the surface is empty, and no mesh is written: " + counted(surface.fused_view_count(), "view") +
                      " with depth up to " + fixed_text(surface.field().settings().maximum_depth, 1) +
-                     " m show no surface in " + counted(surface.field().settings().minimum_views, "view") +
-                     "; check the depth of the source, and `surface.maximum_depth`"});
+                     " m show no surface that at least " + std::to_string(surface.field().settings().minimum_views) +
+                     " of them observed; check the depth of the source, and `surface.maximum_depth`"});
   const SurfaceSettings& settings = surface.field().settings();
-  if (settings.classes && classes.empty())
-    add_warning(record.warnings, {{}, "surface.classes has no effect, because there is no segmenter; add one"});
   if (settings.navigation && !record.surface->empty()) record_navigation(surface, record);
   if (settings.triangles > 0) decimate(*record.surface, static_cast<std::size_t>(settings.triangles));
   if (settings.class_colours && !classes.empty()) colour_by_class(*record.surface);

@@ -8,7 +8,7 @@
 
 namespace holdfast {
 
-std::size_t SurfaceMap::keyframe_count() const {
+std::size_t SurfaceMap::fused_view_count() const {
   return static_cast<std::size_t>(
       std::count_if(entries_.begin(), entries_.end(), [](const Entry& entry) { return !entry.view.only_carves(); }));
 }

@@ -225,7 +225,7 @@ class CarvingTest : public SurfaceFieldTest {
     for (const KeptView& view : carving.views()) all.push_back(view.T_view_keyframe.inverse());
     SurfaceMap map(with.camera, settings_of_test());
     map.update(views, all, 0);
-    EXPECT_EQ(map.keyframe_count(), 8U);
+    EXPECT_EQ(map.fused_view_count(), 8U);
     const TriangleMesh mesh = map.field().mesh();
     // Taken out, they leave no trace.
     map.update(views_of(with, poses), poses, 0);

@@ -27,8 +27,8 @@ class SurfaceMap {
   const SurfaceField& field() const { return field_; }
   const Camera& camera() const { return camera_; }
   std::size_t view_count() const { return entries_.size(); }
-  /// Number of the views that do not only carve.
-  std::size_t keyframe_count() const;
+  /// Number of the views that do not only carve: keyframes, and frames between them.
+  std::size_t fused_view_count() const;
   /// The views that are fused, by increasing frame index, and those that only carve.
   const KeptView& view(std::size_t number) const { return entries_[number].view; }
   /// T_world_camera with which a view is fused.
