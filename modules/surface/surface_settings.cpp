@@ -51,7 +51,7 @@ void SurfaceSettings::describe(ParameterTable<SurfaceSettings>& table) {
       .range(0, 1000);
   table.add("poses", &S::poses,
             "align the depth of frames that cannot be tracked by features with the surface; used for at most "
-            "`tracking.depth_only_time` without features");
+            "`tracking.depth_only_time` without features, and not while the surface waits for corrections of the map");
   table.add("formats", &S::formats, "files to write: ply (surface.ply), obj, glb (binary glTF 2.0)");
   table
       .add("triangles", &S::triangles,
