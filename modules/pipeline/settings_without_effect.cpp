@@ -14,19 +14,20 @@ void PipelineBuilder::check_effects() {
     suspect(origin_.place,
             "'surface' has no effect where the camera is only localised in a map, which stays as it is; continue the "
             "map instead, or remove 'surface'");
-<<<<<<< HEAD
   if (parts_.surface.enabled && parts_.surface.classes && (!segmenter_ || segmenter_->name == "none"))
     suspect(
         origin_.place,
         "'surface.classes' has no effect without a segmenter, which gives pixels their classes; set 'segmenter', or "
         "remove 'surface.classes'");
-=======
-  if (parts_.mapping.inertia && !(parts_.tracking.inertia && parts_.imu))
+  if (parts_.localise_only && parts_.mapping.inertia)
+    suspect(origin_.place,
+            "'mapping.inertia' has no effect where the camera is only localised in a map, which stays as it is; "
+            "continue the map instead, or set mapping.inertia: false");
+  else if (parts_.mapping.inertia && !(parts_.tracking.inertia && parts_.imu))
     suspect(
         origin_.place,
         "'mapping.inertia' has no effect without the estimates of tracking; set tracking.inertia, with a source that "
         "has an IMU, or mapping.inertia: false");
->>>>>>> fca5855bb748d0a86ba6ec64e4d51693e4ea39d9
   bool uses_masks = false;
   for (std::size_t i = 0; i < filters_.size(); ++i) {
     const Needs needs = parts_.filters[i].second->needs();
