@@ -147,6 +147,9 @@ void same_factors_same_bits(const Maker& maker) {
   optimizer->optimize_bundle(second, go_on);
   for (std::size_t i = 0; i < first.poses.size(); ++i)
     EXPECT_EQ(first.poses[i].T_camera_world.matrix(), second.poses[i].T_camera_world.matrix()) << "pose " << i;
+  for (std::size_t i = 0; i < first.factors.motions.size(); ++i)
+    EXPECT_EQ(first.factors.motions[i].velocity, second.factors.motions[i].velocity) << "motion " << i;
+  EXPECT_EQ(first.points, second.points);
   EXPECT_EQ(first.factors.gravity, second.factors.gravity);
 }
 

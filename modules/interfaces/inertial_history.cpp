@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/interfaces/inertial_history.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -12,12 +13,33 @@ namespace holdfast {
 
 namespace {
 
-constexpr std::size_t most_samples = 240000;
-constexpr double longest_link = 5.0;  // [s]
+constexpr std::size_t max_samples = 240000;
+constexpr double max_link = 5.0;  // [s]
 /// Standard deviations of the biases where a chain begins [rad/s], [m/s^2].
 constexpr double gyroscope_deviation = 0.003, accelerometer_deviation = 0.03;
 
 bool is_earlier(const ImuSample& sample, double time) { return sample.timestamp < time; }
+
+bool is_saturated(const ImuSample& sample, const ImuCalibration& imu) {
+  constexpr double share = 0.999;
+  return sample.angular_velocity.cwiseAbs().maxCoeff() >= share * imu.gyroscope_range ||
+         sample.acceleration.cwiseAbs().maxCoeff() >= share * imu.accelerometer_range;
+}
+
+/// Estimates of an IMU that is mounted and timed otherwise do not fit the measurements (InertialMotion).
+bool is_calibrated_as(const MapInertia& known, const ImuCalibration& imu) {
+  return (known.T_body_camera.matrix() - imu.T_body_camera.matrix()).cwiseAbs().maxCoeff() < 1e-6 &&
+         std::abs(known.calibrated_time_offset - imu.time_offset) < 1e-6;
+}
+
+/// Whether a covariance has full rank beyond rounding, judged by the correlations.
+bool has_full_rank(const geometry::Matrix15d& covariance) {
+  constexpr double min_share = 1e-6;  // of a variance that the numbers before it do not explain
+  if (!covariance.allFinite() || !(covariance.diagonal().minCoeff() > 0.0)) return false;
+  const geometry::Vector15d scales = covariance.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<geometry::Matrix15d> cholesky(scales.asDiagonal() * covariance * scales.asDiagonal());
+  return cholesky.info() == Eigen::Success && cholesky.matrixLLT().diagonal().cwiseAbs2().minCoeff() > min_share;
+}
 
 /// State of the body at a pose, in metres.
 Eigen::Isometry3d body_pose(const BundleProblem& problem, std::uint32_t pose) {
@@ -48,29 +70,40 @@ BundleFactors::MotionPrior bias_prior(std::uint32_t motion, const ImuBias& bias)
 }  // namespace
 
 void InertialHistory::add(const SensorFrame& frame) {
-  constexpr double share = 0.999;
   const std::lock_guard lock(mutex_);
   append_imu(samples_, frame.imu);
-  for (const ImuSample& sample : frame.imu)
-    if (sample.angular_velocity.cwiseAbs().maxCoeff() >= share * imu_.gyroscope_range ||
-        sample.acceleration.cwiseAbs().maxCoeff() >= share * imu_.accelerometer_range)
-      saturated_.push_back(sample.timestamp);
-  if (samples_.size() <= most_samples) return;
-  const auto kept = samples_.end() - static_cast<std::ptrdiff_t>(most_samples * 9 / 10);
-  std::erase_if(saturated_, [&](double time) { return time < kept->timestamp; });
-  samples_.erase(samples_.begin(), kept);
+  if (samples_.size() <= max_samples) return;
+  samples_.erase(samples_.begin(), samples_.end() - static_cast<std::ptrdiff_t>(max_samples * 9 / 10));
 }
 
 void InertialHistory::set_estimates(const std::optional<MapInertia>& estimates, std::uint32_t submap) {
   const std::lock_guard lock(mutex_);
-  if (!estimates && submap == submap_) return;
-  estimates_ = estimates;
   submap_ = submap;
+  if (estimates && is_calibrated_as(*estimates, imu_)) estimates_[submap] = *estimates;
+}
+
+void InertialHistory::set_gravity(const Eigen::Vector3d& gravity, std::uint32_t submap) {
+  const std::lock_guard lock(mutex_);
+  const auto found = estimates_.find(submap);
+  if (found != estimates_.end()) found->second.gravity = gravity;
+}
+
+void InertialHistory::forget_map() {
+  const std::lock_guard lock(mutex_);
+  estimates_.clear();
+  submap_ = 0;
+  first_sequence_ = 0;
 }
 
 std::optional<MapInertia> InertialHistory::estimates() const {
   const std::lock_guard lock(mutex_);
-  return estimates_;
+  const auto found = estimates_.find(submap_);
+  return found != estimates_.end() ? std::optional(found->second) : std::nullopt;
+}
+
+std::uint64_t InertialHistory::first_sequence() const {
+  const std::lock_guard lock(mutex_);
+  return first_sequence_;
 }
 
 std::uint32_t InertialHistory::submap() const {
@@ -79,23 +112,27 @@ std::uint32_t InertialHistory::submap() const {
 }
 
 /// A pose is measured `time_offset` after the state of the body (InertialFilter).
-std::optional<geometry::Preintegration> InertialHistory::motion_between(double begin, double end,
+std::optional<geometry::Preintegration> InertialHistory::motion_between(std::span<const ImuSample> samples,
+                                                                        double begin, double end,
                                                                         const MapInertia& estimates) const {
   begin += estimates.time_offset, end += estimates.time_offset;
-  if (!(end - begin <= longest_link)) return std::nullopt;
-  const auto saturated = std::lower_bound(saturated_.begin(), saturated_.end(), begin);
-  if (saturated != saturated_.end() && *saturated <= end) return std::nullopt;
-  auto first = std::lower_bound(samples_.begin(), samples_.end(), begin, is_earlier);
-  if (first != samples_.begin()) --first;
-  auto last = std::lower_bound(first, samples_.end(), end, is_earlier);
-  if (last != samples_.end()) ++last;
+  if (!(end - begin <= max_link)) return std::nullopt;
+  auto first = std::lower_bound(samples.begin(), samples.end(), begin, is_earlier);
+  if (first != samples.begin()) --first;
+  auto last = std::lower_bound(first, samples.end(), end, is_earlier);
+  if (last != samples.end()) ++last;
   std::vector<ImuSample> covered(first, last);
+  if (std::any_of(first, last, [&](const ImuSample& sample) { return is_saturated(sample, imu_); }))
+    return std::nullopt;
   // The sample beyond the latest frame may be missing.
   if (!covered.empty() && covered.back().timestamp < end && end - covered.back().timestamp <= 2.0 / imu_.rate) {
     covered.push_back(covered.back());
     covered.back().timestamp = end;
   }
-  return geometry::preintegrate(covered, begin, end, imu_.noise, estimates.bias);
+  std::optional<geometry::Preintegration> motion =
+      geometry::preintegrate(covered, begin, end, imu_.noise, estimates.bias);
+  if (motion && !has_full_rank(motion->covariance())) motion.reset();
+  return motion;
 }
 
 std::vector<InertialHistory::Link> InertialHistory::links(std::span<const double> timestamps) const {
@@ -104,25 +141,33 @@ std::vector<InertialHistory::Link> InertialHistory::links(std::span<const double
     if (!std::isnan(timestamps[i])) order.push_back(i);
   std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return timestamps[a] < timestamps[b]; });
   std::vector<Link> links;
-  const std::lock_guard lock(mutex_);
-  if (!estimates_) return links;
+  const std::optional<MapInertia> estimates = this->estimates();
+  if (!estimates) return links;
+  std::vector<ImuSample> samples;  // a copy, because tracking waits for the mutex
+  {
+    const std::lock_guard lock(mutex_);
+    samples = samples_;
+  }
   for (std::size_t i = 0; i + 1 < order.size(); ++i)
-    if (const auto motion = motion_between(timestamps[order[i]], timestamps[order[i + 1]], *estimates_))
+    if (const auto motion = motion_between(samples, timestamps[order[i]], timestamps[order[i + 1]], *estimates))
       links.push_back({order[i], order[i + 1], *motion});
   return links;
 }
 
-std::vector<double> linkable_stamps(const Map& map, std::span<const KeyFrameId> keyframes, std::uint32_t submap) {
+std::vector<double> linkable_stamps(const Map& map, std::span<const KeyFrameId> keyframes,
+                                    const InertialHistory& history) {
+  const std::uint32_t submap = history.submap();
+  const std::uint64_t first_sequence = history.first_sequence();
   std::vector<double> timestamps;
   for (const KeyFrameId id : keyframes) {
     const KeyFrame& keyframe = map.keyframe(id);
-    timestamps.push_back(keyframe.submap == submap ? keyframe.frame.timestamp
-                                                   : std::numeric_limits<double>::quiet_NaN());
+    const bool is_linkable = keyframe.submap == submap && keyframe.sequence >= first_sequence;
+    timestamps.push_back(is_linkable ? keyframe.frame.timestamp : std::numeric_limits<double>::quiet_NaN());
   }
   return timestamps;
 }
 
-std::vector<std::uint8_t> add_inertial_factors(BundleProblem& problem, std::span<const double> timestamps,
+std::vector<std::uint8_t> add_inertial_factors(BundleProblem& problem, std::span<const InertialHistory::Link> links,
                                                const InertialHistory& history) {
   std::vector<std::uint8_t> is_linked(problem.poses.size(), 0);
   const std::optional<MapInertia> estimates = history.estimates();
@@ -132,7 +177,6 @@ std::vector<std::uint8_t> add_inertial_factors(BundleProblem& problem, std::span
   factors.T_body_camera = Eigen::Isometry3d(estimates->mounting.transpose()) * estimates->T_body_camera;
   factors.gravity = estimates->gravity;
   factors.scale = estimates->scale;
-  factors.scale_fixed = history.scale_is_known();
   std::vector<std::uint32_t> motion_of(problem.poses.size(), FactorEvaluation::none);
   const auto motion = [&](std::size_t pose, const Eigen::Vector3d& velocity) {
     if (motion_of[pose] == FactorEvaluation::none) {
@@ -142,7 +186,7 @@ std::vector<std::uint8_t> add_inertial_factors(BundleProblem& problem, std::span
     is_linked[pose] = 1;
     return motion_of[pose];
   };
-  for (const InertialHistory::Link& link : history.links(timestamps)) {
+  for (const InertialHistory::Link& link : links) {
     if (problem.poses[link.first].fixed && problem.poses[link.second].fixed) continue;
     const auto [begin, end] =
         velocities(body_pose(problem, static_cast<std::uint32_t>(link.first)),

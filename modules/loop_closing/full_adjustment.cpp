@@ -2,6 +2,7 @@
 #include "holdfast/loop_closing/full_adjustment.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <limits>
 
@@ -27,25 +28,30 @@ std::vector<int> count_shared_points(const Map& map) {
   return shared;
 }
 
-/// By slot, whether inertial measurements link a keyframe to the one before or after it in time.
-std::vector<std::uint8_t> find_linked(const Map& map, const InertialHistory* inertia) {
-  std::vector<std::uint8_t> is_linked(map.keyframes().slot_count(), 0);
-  if (inertia == nullptr) return is_linked;
-  const std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
-  for (const InertialHistory::Link& link : inertia->links(linkable_stamps(map, keyframes, inertia->submap())))
-    is_linked[keyframes[link.first].slot] = is_linked[keyframes[link.second].slot] = 1;
-  return is_linked;
+/// By keyframe slot, the keyframes before and after it in time to which inertial measurements link it.
+using Neighbours = std::vector<std::array<KeyFrameId, 2>>;
+
+Neighbours find_neighbours(const Map& map, const std::vector<KeyFrameId>& keyframes,
+                           const std::vector<InertialHistory::Link>& links) {
+  Neighbours neighbours(map.keyframes().slot_count());
+  for (const InertialHistory::Link& link : links) {
+    neighbours[keyframes[link.first].slot][1] = keyframes[link.second];
+    neighbours[keyframes[link.second].slot][0] = keyframes[link.first];
+  }
+  return neighbours;
 }
+
+bool has_link(const std::array<KeyFrameId, 2>& neighbours) { return neighbours[0].valid() || neighbours[1].valid(); }
 
 /// The keyframes with enough observations to be adjusted, or with an inertial link, oldest first; the first one of
 /// every submap fixes its gauge and is always included.
-std::vector<KeyFrameId> placeable_keyframes(const Map& map, const std::vector<std::uint8_t>& is_linked) {
+std::vector<KeyFrameId> placeable_keyframes(const Map& map, const Neighbours& neighbours) {
   const std::vector<int> shared = count_shared_points(map);
   std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
   SubmapSet submaps;
   std::erase_if(keyframes, [&](KeyFrameId id) {
     const bool is_first = submaps.add(map.keyframe(id).submap);
-    return !is_first && shared[id.slot] < minimum_shared_points && is_linked[id.slot] == 0;
+    return !is_first && shared[id.slot] < minimum_shared_points && !has_link(neighbours[id.slot]);
   });
   return keyframes;
 }
@@ -54,8 +60,8 @@ std::vector<KeyFrameId> placeable_keyframes(const Map& map, const std::vector<st
 constexpr int few_points = 4 * minimum_shared_points;
 
 /// By keyframe slot, the island of each keyframe: those that covisibility joins, by as many points as an adjustment
-/// requires. Islands are named by the slot of their oldest keyframe.
-std::vector<std::uint32_t> find_islands(const Map& map) {
+/// requires, or a link. Islands are named by the slot of their oldest keyframe.
+std::vector<std::uint32_t> find_islands(const Map& map, const Neighbours& neighbours) {
   constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> island(map.keyframes().slot_count(), none);
   std::vector<KeyFrameId> reached;
@@ -64,22 +70,26 @@ std::vector<std::uint32_t> find_islands(const Map& map) {
     island[first.slot] = first.slot;
     reached.assign(1, first);
     while (!reached.empty()) {
-      const KeyFrame& keyframe = map.keyframe(reached.back());
+      const KeyFrameId from = reached.back();
       reached.pop_back();
-      for (const CovisibilityEdge& edge : keyframe.covisible) {
-        if (edge.weight < minimum_shared_points || island[edge.keyframe.slot] != none) continue;
-        island[edge.keyframe.slot] = first.slot;
-        reached.push_back(edge.keyframe);
-      }
+      const auto reach = [&](KeyFrameId id) {
+        if (island[id.slot] != none) return;
+        island[id.slot] = first.slot;
+        reached.push_back(id);
+      };
+      for (const CovisibilityEdge& edge : map.keyframe(from).covisible)
+        if (edge.weight >= minimum_shared_points) reach(edge.keyframe);
+      for (const KeyFrameId id : neighbours[from.slot])
+        if (id.valid()) reach(id);
     }
   }
   return island;
 }
 
 /// By slot, whether a keyframe is the oldest of an island of several that shares hardly a point with the others, as
-/// behind a view that inertial measurements bridged: nothing else fixes the gauge of these.
-std::vector<std::uint8_t> find_island_holders(const Map& map) {
-  const std::vector<std::uint32_t> island = find_islands(map);
+/// behind a view that inertial measurements bridged: without a link nothing else fixes the gauge of these.
+std::vector<std::uint8_t> find_island_holders(const Map& map, const Neighbours& neighbours) {
+  const std::vector<std::uint32_t> island = find_islands(map, neighbours);
   std::vector<int> keyframes(island.size(), 0), links(island.size(), 0);
   for (const KeyFrameId id : map.keyframes_by_age()) ++keyframes[island[id.slot]];
   map.points().for_each([&](MapPointId, const MapPoint& point) {
@@ -126,10 +136,15 @@ void FullAdjustment::cancel() {
 }
 
 void FullAdjustment::prepare() {
-  const std::lock_guard structure_lock(structure_mutex_);  // no correction is in progress
+  std::unique_lock structure_lock(structure_mutex_);  // no correction is in progress
   stop_ = false;
   stop_time_ = 0;
   if (cancelled_) request_stop();
+  if (inertia_ != nullptr) {
+    structure_lock.unlock();
+    find_links();
+    structure_lock.lock();
+  }
   summary_ = {};
   problem_ = {};
   points_.clear();
@@ -138,24 +153,60 @@ void FullAdjustment::prepare() {
   problem_.function_tolerance = settings_.full_tolerance;
 
   const std::lock_guard lock(map_mutex_);
+  drop_stale_links();
   copy_poses();
   copy_points();
-  if (inertia_ != nullptr)
-    is_linked_ = add_inertial_factors(problem_, linkable_stamps(map_, keyframes_, inertia_->submap()), *inertia_);
+  if (!links_.empty()) add_links();
+}
+
+/// Preintegrates the run without a lock, because tracking waits for the map.
+void FullAdjustment::find_links() {
+  std::vector<double> timestamps;
+  {
+    const std::lock_guard lock(map_mutex_);
+    linkable_ = map_.keyframes_by_age();
+    linked_submap_ = inertia_->submap();
+    timestamps = linkable_stamps(map_, linkable_, *inertia_);
+  }
+  links_ = inertia_->links(timestamps);
+}
+
+/// Of keyframes that were removed meanwhile, or have become part of another submap.
+void FullAdjustment::drop_stale_links() {
+  const auto is_stale = [&](std::size_t index) {
+    const KeyFrame* keyframe = map_.find_keyframe(linkable_[index]);
+    return keyframe == nullptr || keyframe->submap != linked_submap_ || inertia_->submap() != linked_submap_;
+  };
+  std::erase_if(links_,
+                [&](const InertialHistory::Link& link) { return is_stale(link.first) || is_stale(link.second); });
+}
+
+void FullAdjustment::add_links() {
+  std::vector<std::size_t> pose_of_slot(map_.keyframes().slot_count());
+  for (std::size_t i = 0; i < keyframes_.size(); ++i) pose_of_slot[keyframes_[i].slot] = i;
+  for (InertialHistory::Link& link : links_) {
+    link.first = pose_of_slot[linkable_[link.first].slot];
+    link.second = pose_of_slot[linkable_[link.second].slot];
+  }
+  is_linked_ = add_inertial_factors(problem_, links_, *inertia_);
+  links_ = {};
 }
 
 void FullAdjustment::copy_poses() {
-  const std::vector<std::uint8_t> is_linked = find_linked(map_, inertia_);
-  keyframes_ = placeable_keyframes(map_, is_linked);
+  const Neighbours neighbours = find_neighbours(map_, linkable_, links_);
+  keyframes_ = placeable_keyframes(map_, neighbours);
   is_linked_.assign(keyframes_.size(), 0);
-  const std::vector<std::uint8_t> holds_island = find_island_holders(map_);
+  is_fixed_without_links_.clear();
+  const std::vector<std::uint8_t> holds = find_island_holders(map_, neighbours);
+  const std::vector<std::uint8_t> holds_without_links =
+      links_.empty() ? holds : find_island_holders(map_, Neighbours(neighbours.size()));
   SubmapSet submaps;
   for (const KeyFrameId id : keyframes_) {
     const KeyFrame& keyframe = map_.keyframe(id);
     if (problem_.camera == nullptr) problem_.camera = keyframe.frame.camera.get();
     const bool holds_submap = submaps.add(keyframe.submap);
-    const bool is_held = holds_island[id.slot] != 0 && is_linked[id.slot] == 0;
-    problem_.poses.push_back({keyframe.frame.T_camera_world, holds_submap || is_held});
+    problem_.poses.push_back({keyframe.frame.T_camera_world, holds_submap || holds[id.slot] != 0});
+    is_fixed_without_links_.push_back(holds_submap || holds_without_links[id.slot] != 0 ? 1 : 0);
   }
 }
 
@@ -184,6 +235,12 @@ void FullAdjustment::solve() {
   summary_.observations = static_cast<int>(problem_.observations.size());
   if (problem_.camera == nullptr) return;
   summary_.bundle = optimizer_.optimize_bundle(problem_, stop_);
+  if (!summary_.bundle.usable && !stop_ && !problem_.factors.empty()) {
+    problem_.factors = BundleFactors();
+    is_linked_.assign(is_linked_.size(), 0);
+    for (std::size_t i = 0; i < problem_.poses.size(); ++i) problem_.poses[i].fixed = is_fixed_without_links_[i] != 0;
+    summary_.bundle = optimizer_.optimize_bundle(problem_, stop_);
+  }
   summary_.seconds_per_iteration = summary_.bundle.seconds / std::max(1, summary_.bundle.iterations);
   if (const std::int64_t asked = stop_time_)
     summary_.stop_seconds = static_cast<double>(now_in_nanoseconds() - asked) * 1e-9;
@@ -198,6 +255,7 @@ FullAdjustmentSummary FullAdjustment::apply() {
   // Frees the copy, because the next adjustment may be far away.
   problem_ = BundleProblem();
   keyframes_ = std::vector<KeyFrameId>();
+  linkable_ = std::vector<KeyFrameId>();
   points_ = std::vector<MapPointId>();
   before_ = std::vector<Eigen::Vector3d>();
   return summary_;
@@ -209,6 +267,7 @@ void FullAdjustment::change_map() {
   in_portions(map_mutex_, points_.size(), [this](std::size_t i) {
     if (map_.find_point(points_[i]) != nullptr) map_.update_point_geometry(points_[i]);
   });
+  if (!problem_.factors.empty()) inertia_->set_gravity(problem_.factors.gravity, linked_submap_);
   const std::lock_guard lock(map_mutex_);
   map_.invalidate_copies();
   summary_.applied = true;

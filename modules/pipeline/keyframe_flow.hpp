@@ -40,7 +40,7 @@ class KeyframeFlow {
   /// Corrects the keyframes by the calibration of a stereo pair; before the first keyframe.
   void calibrate_pair(StereoCalibration& calibration) { mapper_.calibrate_pair(calibration); }
   /// Has full adjustments use inertial measurements; before the first keyframe.
-  void use_inertia(const InertialHistory& history) {
+  void use_inertia(InertialHistory& history) {
     links_by_inertia_ = true;
     adjustment_.use_inertia(history);
   }
@@ -80,8 +80,8 @@ class KeyframeFlow {
 
   /// Waits until every station has done what waits for it, and ends the threads.
   void finish();
-  /// Runs one more full adjustment if keyframes were added since the last loop, which constrain it further, or with
-  /// inertial measurements since the last adjustment, if there was any.
+  /// Runs one more full adjustment if keyframes were added since the last loop, which constrain it further. With
+  /// inertial measurements it runs without a loop as well.
   void adjust_after_last_loop();
   /// Fuses every view at its final pose; the threads have ended.
   void finish_surface();

@@ -126,7 +126,7 @@ struct Pipeline::State {
     whole.set_evidence_limit(static_cast<float>(parts.evidence.limit));
     if (calibration) flow.calibrate_pair(*calibration);
     if (parts.imu && parts.tracking.inertia && parts.mapping.inertia && !parts.localise_only) {
-      inertia.emplace(*parts.imu, features_have_depth(parts.sensor));
+      inertia.emplace(*parts.imu, whole.next_sequence());
       flow.use_inertia(*inertia);
     }
     for (const auto& observer : parts.observers) observer->on_start(parts.segmenter->classes());
@@ -173,6 +173,7 @@ struct Pipeline::State {
   /// Removes the whole map, which began wrong, from every part that knows of it.
   void give_map_up(StageTimes& times) {
     flow.remove_map([this](const LockedMap& locked) { tracker.forget_map(locked); }, times);
+    if (inertia) inertia->forget_map();
   }
 
   PipelineParts parts;
@@ -338,6 +339,8 @@ void Pipeline::finish() {
   s.flow.adjust_after_last_loop();
   if (s.inertia) {
     const LockedMap locked(s.map, LockPriority::background);
+    const std::optional<MapInertia> adjusted = s.inertia->estimates();
+    if (adjusted && locked->inertia()) locked->set_inertia(adjusted);
     s.tracker.smooth_bridges(locked, s.bridged, *s.inertia, *s.parts.optimizer);
   }
   s.flow.finish_surface();

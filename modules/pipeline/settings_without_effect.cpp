@@ -19,7 +19,11 @@ void PipelineBuilder::check_effects() {
         origin_.place,
         "'surface.classes' has no effect without a segmenter, which gives pixels their classes; set 'segmenter', or "
         "remove 'surface.classes'");
-  if (parts_.mapping.inertia && !(parts_.tracking.inertia && parts_.imu))
+  if (parts_.localise_only && parts_.mapping.inertia)
+    suspect(origin_.place,
+            "'mapping.inertia' has no effect where the camera is only localised in a map, which stays as it is; "
+            "continue the map instead, or set mapping.inertia: false");
+  else if (parts_.mapping.inertia && !(parts_.tracking.inertia && parts_.imu))
     suspect(
         origin_.place,
         "'mapping.inertia' has no effect without the estimates of tracking; set tracking.inertia, with a source that "

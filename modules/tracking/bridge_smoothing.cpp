@@ -67,7 +67,7 @@ std::size_t smooth_bridges(FrameHistory& history, const Map& map, std::span<cons
       problem.poses.push_back({T_camera_world, false});
       timestamps.push_back(trajectory[i].timestamp);
     }
-    add_inertial_factors(problem, timestamps, inertia);
+    add_inertial_factors(problem, inertia.links(timestamps), inertia);
     // A gap in the measurements would leave frames without a constraint.
     if (problem.factors.inertial.size() + 1 != problem.poses.size()) continue;
     if (!optimizer.optimize_bundle(problem, std::atomic<bool>(false)).usable) continue;

@@ -34,7 +34,7 @@ class InertialHistoryTest : public testing::Test {
   }
   std::vector<InertialHistory::Link> links(std::vector<double> timestamps) { return history.links(timestamps); }
 
-  InertialHistory history{*find_imu("bmi055"), true};
+  InertialHistory history{*find_imu("bmi055")};
 };
 
 TEST_F(InertialHistoryTest, LinksSuccessiveTimesInTheirOrder) {
@@ -76,6 +76,47 @@ TEST_F(InertialHistoryTest, KeepsTheLastEstimatesOfASubmap) {
   EXPECT_EQ(links({0.5, 1.0}).size(), 1U);
   history.set_estimates(std::nullopt, 1);
   EXPECT_TRUE(links({0.5, 1.0}).empty()) << "gravity in another world is unknown";
+  history.set_estimates(std::nullopt, 0);
+  EXPECT_EQ(links({0.5, 1.0}).size(), 1U) << "back in the first world";
+  history.forget_map();
+  EXPECT_TRUE(links({0.5, 1.0}).empty()) << "the new map has another world";
+}
+
+TEST_F(InertialHistoryTest, ForgetsEstimatesOfAnotherCalibration) {
+  add(0.0, 3.0);
+  InertialHistory other(*find_imu("bmi055"));
+  other.add(frame_from(0.0, 3.0));
+  MapInertia turned = estimates();
+  turned.T_body_camera.linear() = Eigen::AngleAxisd(1.5, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  other.set_estimates(turned, 0);
+  EXPECT_TRUE(other.links(std::vector<double>{0.5, 1.0}).empty());
+  other.set_estimates(estimates(), 0);
+  EXPECT_EQ(other.links(std::vector<double>{0.5, 1.0}).size(), 1U);
+}
+
+/// A single measurement gives position and velocity one error in common.
+TEST_F(InertialHistoryTest, DoesNotLinkOverASingleMeasurement) {
+  add(0.0, 3.0);
+  EXPECT_TRUE(links({0.5005, 0.5035}).empty());
+  EXPECT_EQ(links({0.5005, 0.5135}).size(), 1U);
+}
+
+/// Keyframes of an earlier run, whose clock ran through the same times.
+TEST_F(InertialHistoryTest, LinksKeyframesOfThisRunAlone) {
+  Map map;
+  std::vector<KeyFrameId> keyframes;
+  for (const double time : {1.2, 1.0, 1.5}) {
+    Frame frame;
+    frame.timestamp = time;
+    keyframes.push_back(map.add_keyframe(frame));
+  }
+  InertialHistory continued(*find_imu("bmi055"), 1);
+  const std::vector<double> stamps = linkable_stamps(map, keyframes, continued);
+  EXPECT_TRUE(std::isnan(stamps[0]));
+  EXPECT_EQ(stamps[1], 1.0);
+  EXPECT_EQ(stamps[2], 1.5);
+  continued.forget_map();
+  EXPECT_EQ(linkable_stamps(map, keyframes, continued)[0], 1.2);
 }
 
 /// The camera was seen `time_offset` after the state of the body.
@@ -101,8 +142,7 @@ TEST_F(InertialHistoryTest, AddsAChainWithOnePriorAndVelocitiesThatFollowFromThe
     T_world_camera.translation() = Eigen::Vector3d(0.2 * i, 0.0, 0.0);  // 0.4 m/s
     problem.poses.push_back({T_world_camera.inverse(), i < 2});
   }
-  const std::vector<std::uint8_t> linked =
-      add_inertial_factors(problem, std::vector<double>{1.0, 1.5, 2.0, 2.5}, history);
+  const std::vector<std::uint8_t> linked = add_inertial_factors(problem, links({1.0, 1.5, 2.0, 2.5}), history);
   EXPECT_EQ(linked, (std::vector<std::uint8_t>{0, 1, 1, 1})) << "nothing is free between the first two";
   ASSERT_EQ(problem.factors.motions.size(), 3U);
   EXPECT_EQ(problem.factors.inertial.size(), 2U);

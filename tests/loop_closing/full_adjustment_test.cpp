@@ -75,10 +75,12 @@ TEST_F(FullAdjustmentTest, AKeyframeWithFewPointsStaysWithItsParent) {
   EXPECT_TRUE((map.pose_of(last) * map.pose_of(parent).inverse()).isApprox(relative, 1e-9));
 }
 
-/// What an IMU at the camera of RingWorld measures, which turns by 0.1 rad in each second.
-std::unique_ptr<InertialHistory> measured_ring() {
-  auto history = std::make_unique<InertialHistory>(*find_imu("bmi055"), true);
+/// Measurements of an IMU at the camera of RingWorld, which turns by 0.1 rad in each second.
+/// Nothing is measured in the second before `gap`.
+std::unique_ptr<InertialHistory> measured_ring(int gap = -1) {
+  auto history = std::make_unique<InertialHistory>(*find_imu("bmi055"));
   for (int second = 0; second < 20; ++second) {
+    if (second == gap) continue;
     SensorFrame frame;
     frame.timestamp = second;
     for (int i = -201; i <= 1; ++i)
@@ -104,6 +106,32 @@ TEST_F(FullAdjustmentTest, InertialMeasurementsPlaceKeyframesWithoutPoints) {
   ASSERT_TRUE(summary.applied);
   EXPECT_EQ(summary.keyframes, 20);
   for (std::size_t i = 9; i < 12; ++i) EXPECT_LT(world.error_of(map, keyframes[i]), 0.01) << i;
+}
+
+/// Cannot use factors, although it has no reason to.
+class OnlyVisual final : public Optimizer {
+ public:
+  BundleSummary optimize_bundle(BundleProblem& problem, const std::atomic<bool>& stop) override {
+    factors.push_back(problem.factors.inertial.size());
+    return problem.factors.empty() ? optimizer_->optimize_bundle(problem, stop) : BundleSummary{};
+  }
+  GraphSummary optimize_pose_graph(PoseGraphProblem&) override { return {}; }
+
+  std::vector<std::size_t> factors;  ///< inertial ones by call
+
+ private:
+  std::unique_ptr<Optimizer> optimizer_ = make_optimizer();
+};
+
+TEST_F(FullAdjustmentTest, AdjustsWithoutFactorsThatCannotBeUsed) {
+  const double before = mean_error();
+  OnlyVisual visual;
+  FullAdjustment twice{LoopClosingSettings{}, {map, map_mutex, structure_mutex}, visual};
+  const std::unique_ptr<InertialHistory> history = measured_ring();
+  twice.use_inertia(*history);
+  EXPECT_TRUE(twice.run().applied);
+  EXPECT_EQ(visual.factors, (std::vector<std::size_t>{19, 0}));
+  EXPECT_LT(mean_error(), before);
 }
 
 /// Moves the last camera far away, whatever the problem.
@@ -137,7 +165,8 @@ TEST_F(FullAdjustmentTest, AKeyframeThatFewPointsHoldDoesNotFlee) {
   }
 }
 
-TEST_F(FullAdjustmentTest, AnIslandOfKeyframesKeepsItsPlace) {
+/// Takes from the last four keyframes what they share with the others.
+std::vector<KeyFrameId> make_island(Map& map) {
   const std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
   const std::vector<KeyFrameId> island(keyframes.end() - 4, keyframes.end());
   const std::uint64_t first = map.keyframe(island.front()).sequence;
@@ -149,11 +178,29 @@ TEST_F(FullAdjustmentTest, AnIslandOfKeyframesKeepsItsPlace) {
       if (std::any_of(seen.begin(), seen.end(), is_older)) map.remove_observation(point, id);
     }
   for (const KeyFrameId id : keyframes) map.update_covisibility(id);
+  return island;
+}
+
+TEST_F(FullAdjustmentTest, AnIslandOfKeyframesKeepsItsPlace) {
+  const std::vector<KeyFrameId> keyframes = map.keyframes_by_age(), island = make_island(map);
   ASSERT_FALSE(map.keyframe(island.front()).covisible.empty());
   const Eigen::Isometry3d place = map.pose_of(island.front()), other = map.pose_of(keyframes[10]);
   EXPECT_TRUE(adjustment.run().applied);
   EXPECT_TRUE(map.pose_of(island.front()).isApprox(place, 1e-12)) << "nothing else fixes its gauge";
   EXPECT_FALSE(map.pose_of(keyframes[10]).isApprox(other, 1e-6));
+}
+
+/// Links within the island do not place it.
+TEST_F(FullAdjustmentTest, AnIslandMovesOnlyIfALinkJoinsItToTheMap) {
+  const std::vector<KeyFrameId> island = make_island(map);
+  const Eigen::Isometry3d place = map.pose_of(island.front());
+  for (const int gap : {16, -1}) {
+    FullAdjustment linked{LoopClosingSettings{}, {map, map_mutex, structure_mutex}, *optimizer};
+    const std::unique_ptr<InertialHistory> history = measured_ring(gap);
+    linked.use_inertia(*history);
+    EXPECT_TRUE(linked.run().applied);
+    EXPECT_EQ(map.pose_of(island.front()).isApprox(place, 1e-12), gap == 16) << gap;
+  }
 }
 
 /// Bytes that the process has allocated and not freed.

@@ -8,6 +8,7 @@
 #include "both_optimizers.hpp"
 #include "ceres/factor_cost.hpp"
 #include "geometry/synthetic.hpp"
+#include "holdfast/geometry/relative_pose.hpp"
 #include "inertial_problem.hpp"
 
 namespace holdfast {
@@ -102,18 +103,49 @@ TEST(FactorEvaluation, DerivativesAgreeWithDifferences) {
   }
 }
 
-/// The cost is that of the information, half its squared Mahalanobis distance.
-TEST(FactorEvaluation, WhitensByTheInformation) {
-  BundleProblem problem = problem_of_all_kinds(2);
-  BundleFactors factors;
-  factors.pose_priors = problem.factors.pose_priors;
+/// The cost of the only factor of a problem.
+double cost_of(BundleProblem problem, const BundleFactors& factors) {
   problem.factors = factors;
   const FactorEvaluation evaluation(problem);
-  const BundleFactors::PosePrior& prior = factors.pose_priors.front();
-  const geometry::Vector6d residual =
-      geometry::log_se3(problem.poses[prior.pose].T_camera_world * prior.T_camera_world.inverse());
-  const double expected = 0.5 * residual.dot(prior.information * residual);
-  EXPECT_NEAR(evaluation.cost(evaluation.states()), expected, 1e-9 * expected);
+  return evaluation.cost(evaluation.states());
+}
+
+/// The cost is that of the information, half its squared Mahalanobis distance.
+TEST(FactorEvaluation, WhitensByTheInformation) {
+  const BundleProblem problem = problem_of_all_kinds(2);
+  const auto pose = [&](std::uint32_t index) { return problem.poses[index].T_camera_world; };
+  BundleFactors factors;
+  const BundleFactors::PosePrior prior = problem.factors.pose_priors.front();
+  factors.pose_priors = {prior};
+  geometry::Vector6d residual = geometry::log_se3(pose(prior.pose) * prior.T_camera_world.inverse());
+  double expected = 0.5 * residual.dot(prior.information * residual);
+  EXPECT_NEAR(cost_of(problem, factors), expected, 1e-9 * expected) << "prior";
+
+  factors = {};
+  const BundleFactors::RelativePose relative = problem.factors.relative_poses.front();
+  factors.relative_poses = {relative};
+  residual = geometry::relative_pose_residual(relative.T_to_from.inverse(), pose(relative.from), pose(relative.to));
+  expected = 0.5 * residual.dot(relative.information * residual);
+  EXPECT_NEAR(cost_of(problem, factors), expected, 1e-9 * expected) << "relative pose";
+}
+
+TEST(FactorEvaluation, WhitensInertialFactorsByTheInverseOfTheirCovariance) {
+  const BundleProblem problem = problem_of_all_kinds(2);
+  BundleFactors factors = problem.factors;
+  factors.relative_poses.clear(), factors.pose_priors.clear(), factors.motion_priors.clear();
+  factors.inertial.resize(1);
+  const BundleFactors::Inertial& inertial = factors.inertial.front();
+  const auto state = [&](std::uint32_t index) {
+    const BundleFactors::Motion& motion = factors.motions[index];
+    Eigen::Isometry3d T_world_camera = problem.poses[motion.pose].T_camera_world.inverse();
+    T_world_camera.translation() *= factors.scale;
+    return geometry::InertialState{T_world_camera * factors.T_body_camera.inverse(), motion.velocity, motion.bias};
+  };
+  const geometry::Vector15d residual =
+      inertial.measured.residual(state(inertial.first), state(inertial.second), factors.gravity);
+  const Eigen::FullPivLU<geometry::Matrix15d> covariance(inertial.measured.covariance());
+  const double expected = 0.5 * residual.dot(covariance.solve(residual));
+  EXPECT_NEAR(cost_of(problem, factors), expected, 1e-6 * expected);
 }
 
 /// Ceres moves translation and rotation vector of a pose instead of a left perturbation.
@@ -219,16 +251,42 @@ TEST(SchurAgreesWithCeres, WithoutObservations) {
   expect_agreement(problem, "factors alone");
 }
 
-/// What factors cost a visual problem: nothing, to the last bit.
+/// Poses that are known, with motions and a world that are not, and the tolerance of the settings.
+TEST(SchurAgreesWithCeres, WithFixedPosesAndTheToleranceOfTheSettings) {
+  BundleProblem problem = noisy_problem(9, true);
+  problem.factors.relative_poses.clear();
+  const KnownInertial known = conformance::known_inertial(camera, 9, 1.5);
+  for (std::size_t i = 0; i < problem.poses.size(); ++i) problem.poses[i] = {known.poses[i], true};
+  problem.robust_iterations = problem.final_iterations = 100;
+  BundleProblem reference = problem;
+  reference.function_tolerance = 1e-14;
+  const BundleSummary expected = make_optimizer("ceres")->optimize_bundle(reference, go_on);
+  const BundleSummary found = make_optimizer("schur")->optimize_bundle(problem, go_on);
+  ASSERT_TRUE(expected.usable && found.usable);
+  EXPECT_NEAR(found.final_cost, expected.final_cost, 1e-3 * expected.final_cost + 1e-3);
+  EXPECT_NEAR(problem.factors.scale, reference.factors.scale, 1e-3);
+  EXPECT_LT((problem.factors.gravity - reference.factors.gravity).norm(), 1e-2);
+}
+
+/// Factors without a free state cost a visual problem nothing, to the last bit.
 TEST(Factors, ThatLeaveEverythingFixedChangeNoBit) {
   for (const char* name : {"ceres", "schur"}) {
-    BundleProblem plain = synthetic::bundle_case(camera, 4, 6, 300, 8, 1.0, 0.05, 8).problem, with_factors = plain;
-    for (std::uint32_t i = 0; i < plain.poses.size(); ++i)
-      with_factors.factors.motions.push_back({.pose = i, .bias = {}});
-    make_optimizer(name)->optimize_bundle(plain, go_on);
-    make_optimizer(name)->optimize_bundle(with_factors, go_on);
+    BundleProblem plain = synthetic::bundle_case(camera, 4, 6, 300, 8, 1.0, 0.05, 8).problem;
+    plain.poses[0].fixed = plain.poses[1].fixed = true;
+    BundleProblem with_factors = plain;
+    const BundleProblem other = problem_of_all_kinds(8);
+    for (std::uint32_t i = 0; i < 2; ++i)
+      with_factors.factors.motions.push_back({.pose = i, .bias = {}, .fixed = true});
+    with_factors.factors.inertial.push_back({0, 1, other.factors.inertial.front().measured});
+    with_factors.factors.pose_priors.push_back({0, other.poses[2].T_camera_world, geometry::Matrix6d::Identity()});
+    ASSERT_FALSE(with_factors.factors.empty());
+    ASSERT_TRUE(make_optimizer(name)->optimize_bundle(plain, go_on).usable) << name;
+    ASSERT_TRUE(make_optimizer(name)->optimize_bundle(with_factors, go_on).usable) << name;
     for (std::size_t i = 0; i < plain.poses.size(); ++i)
       EXPECT_EQ(plain.poses[i].T_camera_world.matrix(), with_factors.poses[i].T_camera_world.matrix()) << name << i;
+    EXPECT_EQ(plain.points, with_factors.points) << name;
+    for (std::size_t i = 0; i < plain.observations.size(); ++i)
+      EXPECT_EQ(plain.observations[i].outlier, with_factors.observations[i].outlier) << name << i;
   }
 }
 

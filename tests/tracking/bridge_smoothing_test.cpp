@@ -68,7 +68,7 @@ class BridgeTest : public testing::Test {
   KeyFrameId reference = map.add_keyframe(keyframe());
   FrameHistory history;
   std::vector<double> bridged;
-  InertialHistory inertia{*find_imu("bmi055"), true};
+  InertialHistory inertia{*find_imu("bmi055")};
   std::unique_ptr<Optimizer> optimizer = [] {
     Registry registry;
     holdfast_register_plugin_schur(registry);
@@ -83,7 +83,7 @@ TEST_F(BridgeTest, FramesOfABridgeFollowTheFramesOnBothSides) {
 }
 
 TEST_F(BridgeTest, StaysWithoutMeasurements) {
-  const InertialHistory nothing(*find_imu("bmi055"), true);
+  const InertialHistory nothing(*find_imu("bmi055"));
   EXPECT_EQ(smooth_bridges(history, map, bridged, nothing, *optimizer), 0U);
   EXPECT_NEAR(largest_error(), 0.15, 1e-6);
 }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -17,21 +18,29 @@
 namespace holdfast {
 
 /// The inertial measurements of a run, from which adjustments preintegrate the motion between any two keyframes: a
-/// keyframe that is culled needs no merging. The latest 20 minutes at 200 Hz are kept (15 MB). Any thread.
+/// keyframe that is culled needs no merging. The latest 240,000 measurements are kept (15 MB): 20 minutes at 200 Hz, 4
+/// at 1 kHz. Any thread.
 class InertialHistory {
  public:
-  /// `scale_is_known`: the unit of the map is the metre.
-  InertialHistory(const ImuCalibration& imu, bool scale_is_known) : imu_(imu), scale_is_known_(scale_is_known) {}
+  /// `first_sequence`: of the first keyframe of this run. Those before it are of another run, whose time stamps say
+  /// nothing about these measurements.
+  explicit InertialHistory(const ImuCalibration& imu, std::uint64_t first_sequence = 0)
+      : imu_(imu), first_sequence_(first_sequence) {}
 
   /// Adds the measurements of a frame; frames must be passed in temporal order.
   void add(const SensorFrame& frame);
-  /// Sets the estimates of tracking, in the world of a submap. Where it has none any more, because images contradicted
-  /// its state, the last ones in this submap stay. Without any, there are no links.
+  /// Sets the estimates of tracking, in the world of a submap, whose keyframes are linked from now on. Where it has
+  /// none any more, because images contradicted its state, the last ones in this submap stay. Without any, there are no
+  /// links. Estimates of another calibration count as none.
   void set_estimates(const std::optional<MapInertia>& estimates, std::uint32_t submap);
+  /// Replaces the gravity of these estimates, where there are any.
+  void set_gravity(const Eigen::Vector3d& gravity, std::uint32_t submap);
+  /// Forgets all estimates: the map was cleared, and begins again with submap 0 and the first keyframe.
+  void forget_map();
   std::optional<MapInertia> estimates() const;
   /// Submap whose keyframes the measurements link.
   std::uint32_t submap() const;
-  bool scale_is_known() const { return scale_is_known_; }
+  std::uint64_t first_sequence() const;
 
   /// Preintegrated motion between two entries of a list.
   struct Link {
@@ -39,29 +48,31 @@ class InertialHistory {
     geometry::Preintegration measured;
   };
   /// The motions between successive time stamps [s], in temporal order; entries that are NaN are skipped. There is no
-  /// link over a gap or a saturated measurement, or over more than 5 s, without estimates, and outside what is kept.
+  /// link over a gap or a saturated measurement, or over more than 5 s, without estimates, outside what is kept, and
+  /// where a single measurement leaves position and velocity without a covariance of full rank.
   std::vector<Link> links(std::span<const double> timestamps) const;
 
  private:
-  std::optional<geometry::Preintegration> motion_between(double begin, double end, const MapInertia& estimates) const;
+  std::optional<geometry::Preintegration> motion_between(std::span<const ImuSample> samples, double begin, double end,
+                                                         const MapInertia& estimates) const;
 
   const ImuCalibration imu_;
-  const bool scale_is_known_;
   mutable std::mutex mutex_;  // of all below
   std::vector<ImuSample> samples_;
-  std::vector<double> saturated_;  // time stamps [s]
-  std::optional<MapInertia> estimates_;
+  std::map<std::uint32_t, MapInertia> estimates_;  // by submap
   std::uint32_t submap_ = 0;
+  std::uint64_t first_sequence_ = 0;
 };
 
-/// Time stamps of the keyframes that belong to the submap [s], NaN of the others.
-std::vector<double> linkable_stamps(const Map& map, std::span<const KeyFrameId> keyframes, std::uint32_t submap);
+/// Time stamps of the keyframes of this run in the submap that the history links [s], NaN of the others.
+std::vector<double> linkable_stamps(const Map& map, std::span<const KeyFrameId> keyframes,
+                                    const InertialHistory& history);
 
-/// Adds motions and inertial factors between successive poses to a bundle problem, with biases, gravity, scale and
-/// calibration as tracking estimates them, and velocities that follow from the poses (Campos et al. 2021, section VI-B:
-/// the graph of visual-inertial adjustments). Biases have a prior where a chain of factors begins. `timestamps`: of
-/// each pose [s]; NaN = not linked. Returns, for each pose, whether it belongs to a factor.
-std::vector<std::uint8_t> add_inertial_factors(BundleProblem& problem, std::span<const double> timestamps,
+/// Adds motions and inertial factors between the linked poses to a bundle problem, with biases, gravity, scale (fixed)
+/// and calibration as tracking estimates them, and velocities that follow from the poses (Campos et al. 2021, section
+/// VI-B: the graph of visual-inertial adjustments). Biases have a prior where a chain of factors begins. `links`: of
+/// InertialHistory::links(), between indices of poses. Returns, for each pose, whether it belongs to a factor.
+std::vector<std::uint8_t> add_inertial_factors(BundleProblem& problem, std::span<const InertialHistory::Link> links,
                                                const InertialHistory& history);
 
 }  // namespace holdfast

@@ -16,12 +16,12 @@
 namespace holdfast {
 
 /// Bundle adjustment of the whole map after a loop (Mur-Artal and Tardos 2017, section III-E), concurrent with tracking
-/// and mapping: prepare() copies the map under the structure mutex and its lock, solve() works on the copy without any
-/// lock, apply() writes the result to the map under the structure mutex and the map's lock. Keyframes inserted
-/// meanwhile are moved with their parents, points with their reference keyframes; removed ones are skipped. The oldest
-/// keyframe is fixed. With inertial measurements, factors link the keyframes: those behind a view that people hid,
-/// which hardly share a point with the others, are then placed by the motion from both sides (Campos et al. 2021,
-/// section VI-B).
+/// and mapping: prepare() preintegrates without a lock and copies the map under the structure mutex and its lock,
+/// solve() works on the copy without any lock, apply() writes the result to the map under the structure mutex and the
+/// map's lock. Keyframes inserted meanwhile are moved with their parents, points with their reference keyframes;
+/// removed ones are skipped. The oldest keyframe is fixed. With inertial measurements, factors link the keyframes:
+/// those behind a view that people hid, which hardly share a point with the others, are then placed by the motion from
+/// both sides (Campos et al. 2021, section VI-B). If the factors cannot be used, the map is adjusted without them.
 ///
 /// A stopped adjustment is never applied, because a new loop has moved the map or the run ends.
 ///
@@ -33,8 +33,8 @@ class FullAdjustment {
   /// All references must outlive this object.
   FullAdjustment(const LoopClosingSettings& settings, const SharedMap& shared, Optimizer& optimizer);
 
-  /// Links keyframes by these measurements, which must outlive this object.
-  void use_inertia(const InertialHistory& history) { inertia_ = &history; }
+  /// Links keyframes by these measurements, which must outlive this object and get the gravity that is found.
+  void use_inertia(InertialHistory& history) { inertia_ = &history; }
   /// Copies the map. Acquires the structure mutex and the map's lock.
   void prepare();
   /// Solves the problem without a lock; checks for a request to stop between iterations.
@@ -55,7 +55,10 @@ class FullAdjustment {
   void cancel();
 
  private:
+  void find_links();
+  void drop_stale_links();
   void copy_poses();
+  void add_links();
   void copy_points();
   void change_map();
   void move_map();
@@ -66,15 +69,19 @@ class FullAdjustment {
   MapMutex& map_mutex_;
   std::mutex& structure_mutex_;
   Optimizer& optimizer_;
-  const InertialHistory* inertia_ = nullptr;
+  InertialHistory* inertia_ = nullptr;
   std::atomic<bool> stop_{false};
   std::atomic<bool> cancelled_{false};
   std::atomic<std::int64_t> stop_time_{0};  // [ns] of the steady clock; 0 = not requested
   BundleProblem problem_;
-  std::vector<KeyFrameId> keyframes_;    // by pose
-  std::vector<std::uint8_t> is_linked_;  // by pose, whether it has an inertial factor
-  std::vector<MapPointId> points_;       // by point
-  std::vector<Eigen::Vector3d> before_;  // positions of the points before the adjustment
+  std::vector<KeyFrameId> keyframes_;         // by pose
+  std::vector<KeyFrameId> linkable_;          // keyframes when the links were found
+  std::vector<InertialHistory::Link> links_;  // between indices of linkable_
+  std::uint32_t linked_submap_ = 0;
+  std::vector<std::uint8_t> is_linked_;               // by pose, whether it has an inertial factor
+  std::vector<std::uint8_t> is_fixed_without_links_;  // by pose
+  std::vector<MapPointId> points_;                    // by point
+  std::vector<Eigen::Vector3d> before_;               // positions of the points before the adjustment
   FullAdjustmentSummary summary_;
 };
 

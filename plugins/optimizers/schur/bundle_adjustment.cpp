@@ -120,6 +120,8 @@ double BundleAdjuster::moved_cost(bool is_robust) {
 
 double BundleAdjuster::minimise(int iterations, bool is_robust, const std::atomic<bool>& stop, BundleSummary& summary) {
   double cost = current_cost(is_robust);
+  // Where no pose is free, factors move motions and the world alone, which a damped step hardly reaches.
+  const bool has_poses = factors_.empty() || arrays_.free_count() > 0;
   for (int i = 0; i < iterations; ++i) {
     if (stop.load(std::memory_order_relaxed)) {
       summary.stopped = true;
@@ -148,10 +150,11 @@ double BundleAdjuster::minimise(int iterations, bool is_robust, const std::atomi
     }
     // The first phase only prepares the second one.
     const double tolerance = function_tolerance_ * cost * (stops_early_ && is_robust ? 10.0 : 1.0);
-    if (std::abs(decrease) <= tolerance || pose_step <= step_tolerance_) return cost;
+    if (std::abs(decrease) <= tolerance || (has_poses && pose_step <= step_tolerance_)) return cost;
     // If the linearisation foresaw the decrease to within the tolerance, its minimum, which a step with little damping
     // reaches, is that of the cost.
-    if (stops_early_ && damping <= Damping().value() && std::abs(decrease - predicted) <= tolerance) return cost;
+    if (stops_early_ && has_poses && damping <= Damping().value() && std::abs(decrease - predicted) <= tolerance)
+      return cost;
   }
   return cost;
 }

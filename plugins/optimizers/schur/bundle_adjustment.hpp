@@ -24,12 +24,12 @@ namespace holdfast::schur_plugin {
 /// observation is decided anew: `outlier` is also set for points behind the camera and for numbers that are not finite.
 /// If the problem states a tolerance, a phase ends when a step lowers the cost by less than this share. Otherwise it
 /// ends when a step lowers the cost by less than function_tolerance of it (ten times as much in phase one, which
-/// prepares phase two), or moves no pose by more than step_tolerance, or when the actual decrease matches the predicted
-/// one (gain ratio ~1) within the tolerance, so that another step would gain less.
+/// prepares phase two), or moves no free pose by more than step_tolerance, or when the actual decrease matches the
+/// predicted one (gain ratio ~1) within the tolerance, so that another step would gain less.
 ///
 /// Left as they are: points without an observation from a free pose, points with fewer than three residuals, poses
-/// without observations. Not usable: nothing free, or no finite solution. Indices out of range throw CheckError. With
-/// no fixed pose at all the gauge is held only by the damping.
+/// without observations and factors. Not usable: nothing free, or no finite solution. Indices out of range throw
+/// CheckError. With no fixed pose at all the gauge is held only by the damping.
 class BundleAdjuster {
  public:
   BundleAdjuster(const SchurSettings& settings, SimdLevel level) : settings_(settings), kernels_(kernels(level)) {}

@@ -19,19 +19,19 @@ namespace holdfast::schur_plugin {
 ///     [   .        F_mm   F_mw ]  9 m
 ///     [   .          .    F_ww ]  up to 3
 ///
-/// where S is the visual part (BlockSystem) and F the Gauss-Newton Hessian of the factors: a pose with its motion is a
-/// block of 15. Solved by a sparse Cholesky factorisation with a fill-reducing order, since motions are coupled in
-/// chains.
+/// where S is the visual part (BlockSystem) and F the Gauss-Newton Hessian of the factors. Solved by a sparse Cholesky
+/// factorisation with a fill-reducing order, since motions are coupled in chains.
 class FactorSystem {
  public:
   /// Takes the factors of a problem; `free_poses` are the indices of the free poses in the order of the system.
-  /// Returns whether the factors' numbers can be used. `poses`: T_camera_world of all poses as in BundleArrays.
+  /// Returns whether the factors' numbers can be used.
   bool begin(const BundleProblem& problem, std::span<const std::uint32_t> free_poses);
   /// Releases the problem.
   void end() { evaluation_.reset(); }
   bool empty() const { return !evaluation_ || evaluation_->factors().empty(); }
 
-  /// Cost of the factors, with the given free poses, at the current motions or at those after the step.
+  /// Cost of the factors, with the free poses T_camera_world (as in BundleArrays), at the current motions or at those
+  /// after the step.
   double cost(const double* poses);
   double moved_cost(const double* poses);
   /// Makes the states after the step the current ones.
