@@ -68,6 +68,8 @@ std::size_t smooth_bridges(FrameHistory& history, const Map& map, std::span<cons
       timestamps.push_back(trajectory[i].timestamp);
     }
     add_inertial_factors(problem, inertia.links(timestamps), inertia);
+    problem.robust_iterations = 0, problem.final_iterations = 50;  // no observation is an outlier
+    problem.function_tolerance = 1e-6;
     // A gap in the measurements would leave frames without a constraint.
     if (problem.factors.inertial.size() + 1 != problem.poses.size()) continue;
     if (!optimizer.optimize_bundle(problem, std::atomic<bool>(false)).usable) continue;

@@ -20,9 +20,9 @@ constexpr int step = 16;            // the number of disparities that OpenCV sea
 /// The least number of disparities that OpenCV can search up to this one [px].
 int in_steps(double disparity) { return std::max(1, static_cast<int>(std::ceil(disparity / step))) * step; }
 
-/// `speckle_size`: smaller regions of like disparities are taken for errors [pixels].
-cv::Ptr<cv::StereoSGBM> make_matcher(int speckle_size) {
-  constexpr int block = 5;  // px
+/// `block`: size of the compared blocks [px]. `speckle_size`: smaller regions of like disparities are taken for errors
+/// [pixels].
+cv::Ptr<cv::StereoSGBM> make_matcher(int block, int speckle_size) {
   constexpr int uniqueness = 10, speckle_range = 2, left_right = 1;
   // The penalties that OpenCV's documentation recommends.
   return cv::StereoSGBM::create(0, step, block, 8 * block * block, 32 * block * block, left_right, 0, uniqueness,
@@ -42,8 +42,8 @@ const std::int16_t* half_row(const cv::Mat& half, int row) {
 
 SemiGlobalStereo::SemiGlobalStereo(double max_disparity, int width)
     : disparities_(in_steps(std::min(max_disparity, 0.5 * width) / 2.0)),
-      matcher_(make_matcher(60)),
-      coarse_matcher_(make_matcher(4)) {}
+      matcher_(make_matcher(5, 60)),
+      coarse_matcher_(make_matcher(3, 4)) {}
 
 void SemiGlobalStereo::match(const cv::Mat& left, const cv::Mat& right, cv::Mat& disparity) {
   halve(left, half_left_);

@@ -288,7 +288,7 @@ TEST_F(StereoMatcherTest, FarSurfacesAndPairsWithoutADenseMatcherHaveNoDepthImag
 }
 
 TEST_F(StereoMatcherTest, ASmallNearObjectHasDepth) {
-  const cv::Rect object(200, 100, 40, 40);
+  const cv::Rect object(200, 100, 64, 64);
   cv::Mat(left_(object) + cv::Scalar(12)).copyTo(right_(object - cv::Point(40, 0)));  // 40 px of disparity: 0.5 m
   PairDepth stereo(*frame_.camera, {});
   const cv::Mat depth = depth_image(stereo, left_, right_)(object);
