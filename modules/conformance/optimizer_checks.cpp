@@ -333,7 +333,7 @@ std::vector<Check> optimizer_checks() {
   const Promise bundle{
       header,
       "Poses and points together: local and full bundle adjustment (Mur-Artal and Tardos 2017, section "
-      "III-C)."};
+      "III-C); with factors a visual-inertial one"};
   const Promise unchanged{header, "false: nothing was changed"};
   const Promise threads{header, "Any method may be called by several threads at once, each with a problem of its own."};
   std::vector<Check> checks = {

@@ -133,23 +133,26 @@ TEST(BadModules, FiltersAreFound) {
 }
 
 TEST(BadModules, OptimizersAreFound) {
-  expect_found("optimizer",
-               {{"denies_factors", {"SolvesAnInertialBundle"}},
-                {"ignores_factors", {"EstimatesAFreeScale", "LeavesFactorsThatCannotBeUsed", "SolvesAnInertialBundle"}},
-                {"counts_calls",
-                 {"InstancesDoNotMeet", "LeavesAPoseThatCannotBeFound", "ManyThreadsAtOnce", "SameProblemSameBits"}},
-                {"forgets_inliers", {"MarksInliersOfAPose", "SurvivesNumbersThatAreNone"}},
-                {"ignores_weights", {"LeavesOutWhatHasNoWeight", "LeavesWhatIsNotOut"}},
-                {"miscounts", {"FindsAPose", "MarksInliersOfAPose", "MarksOutliersOfABundle", "SolvesABundle"}},
-                {"moves_fixed", {"KeepsFixedPoses", "LeavesABundleThatCannotBeSolved", "StopsABundle"}},
-                {"moves_unusable", {"LeavesAPoseThatCannotBeFound"}},
-                {"never_stops", {"StopsABundle"}},
-                {"no_covariance", {"CovarianceIsOne"}},
-                {"no_number",
-                 {"FindsAPose", "InstancesDoNotMeet", "LeavesAPoseThatCannotBeFound", "LeavesOutWhatHasNoWeight",
-                  "ManyThreadsAtOnce", "MarksInliersOfAPose", "SameProblemSameBits", "SurvivesNumbersThatAreNone"}},
-                {"rounds_rotations", {"FindsAPose", "LeavesAPoseThatCannotBeFound"}},
-                {"stays_away", {"LeavesAGraphThatCannotBeSolved", "SolvesAGraph"}}});
+  expect_found(
+      "optimizer",
+      {{"denies_factors", {"SolvesAnInertialBundle"}},
+       {"ignores_factors",
+        {"EstimatesAFreeScale", "KeepsFixedMotions", "LeavesFactorsThatCannotBeUsed", "SolvesAnInertialBundle"}},
+       {"counts_calls",
+        {"InstancesDoNotMeet", "LeavesAPoseThatCannotBeFound", "ManyThreadsAtOnce", "SameProblemSameBits"}},
+       {"forgets_inliers", {"MarksInliersOfAPose", "SurvivesNumbersThatAreNone"}},
+       {"ignores_weights", {"LeavesOutWhatHasNoWeight", "LeavesWhatIsNotOut"}},
+       {"miscounts", {"FindsAPose", "MarksInliersOfAPose", "MarksOutliersOfABundle", "SolvesABundle"}},
+       {"moves_fixed",
+        {"KeepsFixedPoses", "LeavesABundleThatCannotBeSolved", "LeavesFactorsThatCannotBeUsed", "StopsABundle"}},
+       {"moves_unusable", {"LeavesAPoseThatCannotBeFound"}},
+       {"never_stops", {"StopsABundle"}},
+       {"no_covariance", {"CovarianceIsOne"}},
+       {"no_number",
+        {"FindsAPose", "InstancesDoNotMeet", "LeavesAPoseThatCannotBeFound", "LeavesOutWhatHasNoWeight",
+         "ManyThreadsAtOnce", "MarksInliersOfAPose", "SameProblemSameBits", "SurvivesNumbersThatAreNone"}},
+       {"rounds_rotations", {"FindsAPose", "LeavesAPoseThatCannotBeFound"}},
+       {"stays_away", {"LeavesAGraphThatCannotBeSolved", "SolvesAGraph"}}});
 }
 
 TEST(BadModules, LoopDetectorsAreFound) {
