@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "both_optimizers.hpp"
+#include "agreement.hpp"
 #include "ceres/factor_cost.hpp"
 #include "geometry/synthetic.hpp"
 #include "holdfast/geometry/relative_pose.hpp"
@@ -210,18 +210,8 @@ BundleProblem noisy_problem(std::uint64_t seed, bool with_scale) {
 }
 
 void expect_agreement(BundleProblem problem, const std::string& what, std::int64_t dense_poses = 60) {
-  problem.robust_iterations = problem.final_iterations = 200;
-  problem.function_tolerance = 1e-14;
-  BundleProblem reference = problem;
-  const BundleSummary expected = make_optimizer("ceres")->optimize_bundle(reference, go_on);
-  const BundleSummary found = make_optimizer("schur", {{"dense_poses", dense_poses}})->optimize_bundle(problem, go_on);
-  ASSERT_TRUE(expected.usable && found.usable) << what;
-  EXPECT_NEAR(found.initial_cost, expected.initial_cost, 1e-9 * expected.initial_cost) << what;
-  EXPECT_NEAR(found.final_cost, expected.final_cost, 1e-6 * expected.final_cost) << what;
-  EXPECT_EQ(found.outliers, expected.outliers) << what;
-  for (std::size_t i = 0; i < problem.poses.size(); ++i)
-    EXPECT_LT(synthetic::distance(problem.poses[i].T_camera_world, reference.poses[i].T_camera_world), 1e-5)
-        << what << ", pose " << i;
+  BundleProblem reference;
+  ASSERT_NO_FATAL_FAILURE(expect_same_solution(problem, reference, what, dense_poses, 1e-5));
   for (std::size_t i = 0; i < problem.factors.motions.size(); ++i) {
     const auto &is = problem.factors.motions[i], &should_be = reference.factors.motions[i];
     EXPECT_LT((is.velocity - should_be.velocity).norm(), 1e-5) << what << ", velocity " << i;

@@ -9,11 +9,8 @@
 
 #include "holdfast/pipeline/pipeline.hpp"
 #include "holdfast/plugin/abi.hpp"
-#include "holdfast/plugin/registry.hpp"
 #include "support/brute_force_detector.hpp"
-#include "support/point_world.hpp"
-
-extern "C" void holdfast_register_plugin_ceres(holdfast::Registry&);
+#include "support/point_pipeline.hpp"
 
 namespace holdfast {
 namespace {
@@ -29,12 +26,7 @@ std::size_t allocated() {
 }
 
 void make_and_drop(test::PointWorld& world, int frames, bool finish) {
-  Registry registry;
-  holdfast_register_plugin_ceres(registry);
-  PipelineParts parts;
-  parts.camera = world.camera();
-  parts.features = std::make_unique<test::PointExtractor>(world, 0.3);
-  parts.optimizer = registry.create<Optimizer>("ceres", {}, {});
+  PipelineParts parts = test::point_parts(world);
   parts.loop_detector = std::make_unique<test::BruteForceDetector>();
   parts.run.mode = RunMode::threaded;
   Pipeline pipeline(std::move(parts));

@@ -9,11 +9,8 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/dense_map/static_scene.hpp"
 #include "holdfast/pipeline/pipeline.hpp"
-#include "holdfast/plugin/registry.hpp"
 #include "holdfast/surface/surface_map.hpp"
-#include "support/point_world.hpp"
-
-extern "C" void holdfast_register_plugin_ceres(holdfast::Registry&);
+#include "support/point_pipeline.hpp"
 
 namespace holdfast {
 namespace {
@@ -66,12 +63,7 @@ class ViewObserver final : public Observer {
 
 Pipeline fed_pipeline(bool enabled, bool segmented, bool threaded, Told* told = nullptr) {
   test::PointWorld world(find_camera("tum_fr3").value());
-  Registry registry;
-  holdfast_register_plugin_ceres(registry);
-  PipelineParts parts;
-  parts.camera = world.camera();
-  parts.features = std::make_unique<test::PointExtractor>(world, 0.3);
-  parts.optimizer = registry.create<Optimizer>("ceres", {}, {});
+  PipelineParts parts = test::point_parts(world);
   parts.dense_map.enabled = enabled;
   if (threaded) parts.run.mode = RunMode::threaded;
   if (segmented) parts.segmenter = std::make_unique<RightThird>();
@@ -151,12 +143,7 @@ SensorFrame with_wall(SensorFrame frame, const Camera& camera, const Eigen::Isom
 }
 
 PipelineParts parts_with_surface(test::PointWorld& world) {
-  Registry registry;
-  holdfast_register_plugin_ceres(registry);
-  PipelineParts parts;
-  parts.camera = world.camera();
-  parts.features = std::make_unique<test::PointExtractor>(world, 0.3);
-  parts.optimizer = registry.create<Optimizer>("ceres", {}, {});
+  PipelineParts parts = test::point_parts(world);
   parts.surface = {.enabled = true, .voxel = 0.2, .maximum_depth = 9.0, .moves_per_keyframe = 0, .cell = 0.5};
   parts.dense_map.step = 8;
   return parts;
