@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <numeric>
 
@@ -104,42 +105,67 @@ Strip strip_of(const cv::Mat& right, int column, float top, int width, int side,
   return {buffer.data(), width};
 }
 
+using Shifts = std::int16_t __attribute__((vector_size(2 * lanes)));  // a value of each of the columns
+
+Shifts shifts_at(const std::int16_t* values) {
+  Shifts result;
+  std::memcpy(&result, values, sizeof result);
+  return result;
+}
+
+/// The strip's rows as words, and the sums of its columns.
+struct Columns {
+  static constexpr int width = (max_side - 1 + max_shifts + lanes - 1) / lanes * lanes + lanes;
+  std::array<std::array<std::int16_t, width>, max_side> rows;
+  std::array<std::int16_t, width> sums;
+
+  Columns(const Strip& strip, int used, int side) {
+    using Bytes = std::uint8_t __attribute__((vector_size(lanes)));
+    std::array<std::uint8_t, width> bytes{};
+    const int end = (used + lanes - 1) / lanes * lanes + lanes;  // what comes after the last shift is read as well
+    std::fill(sums.begin(), sums.begin() + end, std::int16_t{0});
+    for (int row = 0; row < side; ++row) {
+      std::copy_n(strip.row(row), used, bytes.begin());
+      for (int k = 0; k < end; k += lanes) {
+        Bytes packed;
+        std::memcpy(&packed, bytes.data() + k, sizeof packed);
+        const Shifts values = __builtin_convertvector(packed, Shifts);
+        const Shifts sum = shifts_at(sums.data() + k) + values;
+        std::memcpy(rows[static_cast<std::size_t>(row)].data() + k, &values, sizeof values);
+        std::memcpy(sums.data() + k, &sum, sizeof sum);  // 31 times 255 at most
+      }
+    }
+  }
+};
+
 /// Sums of absolute differences between a patch of the left image, centred at (x, y), and those of the strip, the first
 /// of which is at its left end. The mean difference is subtracted: it is one of exposure.
-void compare_patches(const cv::Mat& left, int x, int y, const Strip& right, int shifts, int radius,
+void compare_patches(const cv::Mat& left, int x, int y, const Strip& strip, int shifts, int radius,
                      std::array<int, max_shifts>& costs) {
-  const int side = 2 * radius + 1, width = side - 1 + shifts;
+  const int side = 2 * radius + 1;
+  const Columns right(strip, side - 1 + shifts, side);
+  const auto left_row = [&](int row) { return left.ptr<std::uint8_t>(y - radius + row) + x - radius; };
   int left_sum = 0;
-  std::array<int, max_side + max_shifts> column_sums{};
-  for (int row = 0; row < side; ++row) {
-    const std::uint8_t* a = left.ptr<std::uint8_t>(y - radius + row) + x - radius;
-    const std::uint8_t* b = right.row(row);
-    for (int k = 0; k < side; ++k) left_sum += a[k];
-    for (int k = 0; k < width; ++k) column_sums[static_cast<std::size_t>(k)] += b[k];
-  }
+  for (int row = 0; row < side; ++row) left_sum = std::accumulate(left_row(row), left_row(row) + side, left_sum);
   std::array<std::int16_t, max_shifts> means{};
-  int right_sum = std::accumulate(column_sums.begin(), column_sums.begin() + side, 0);
+  int right_sum = std::accumulate(right.sums.begin(), right.sums.begin() + side, 0);
   for (int shift = 0; shift < shifts; ++shift) {
     means[static_cast<std::size_t>(shift)] = static_cast<std::int16_t>((left_sum - right_sum) / (side * side));
-    right_sum += column_sums[static_cast<std::size_t>(shift + side)] - column_sums[static_cast<std::size_t>(shift)];
+    right_sum += right.sums[static_cast<std::size_t>(shift + side)] - right.sums[static_cast<std::size_t>(shift)];
   }
 
   costs.fill(0);
-  std::array<std::int16_t, max_side + max_shifts> strip{};
-  for (int row = 0; row < side; ++row) {
-    const std::uint8_t* a = left.ptr<std::uint8_t>(y - radius + row) + x - radius;
-    const std::uint8_t* b = right.row(row);
-    for (int k = 0; k < width; ++k) strip[static_cast<std::size_t>(k)] = b[k];
-    for (int block = 0; block < shifts; block += lanes) {
-      // The differences of one row, 31 times 510 at most, fit into 16 bits.
-      std::array<std::int16_t, lanes> sums{};
-      for (int k = 0; k < side; ++k)
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
-          const auto there = static_cast<std::size_t>(block) + lane;
-          const int difference = a[k] - strip[there + static_cast<std::size_t>(k)] - means[there];
-          sums[lane] = static_cast<std::int16_t>(sums[lane] + (difference < 0 ? -difference : difference));
-        }
-      for (std::size_t lane = 0; lane < lanes; ++lane) costs[static_cast<std::size_t>(block) + lane] += sums[lane];
+  for (int block = 0; block < shifts; block += lanes) {
+    const Shifts mean = shifts_at(means.data() + block);
+    for (int row = 0; row < side; ++row) {
+      const std::uint8_t* a = left_row(row);
+      const std::int16_t* b = right.rows[static_cast<std::size_t>(row)].data() + block;
+      Shifts sums{};  // the differences of one row, 31 times 510 at most, fit into 16 bits
+      for (int k = 0; k < side; ++k) {
+        const Shifts difference = static_cast<std::int16_t>(a[k]) - mean - shifts_at(b + k);
+        sums += difference < 0 ? -difference : difference;
+      }
+      for (int lane = 0; lane < lanes; ++lane) costs[static_cast<std::size_t>(block + lane)] += sums[lane];
     }
   }
 }
