@@ -2,6 +2,7 @@
 #include "semi_global_stereo.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <opencv2/calib3d.hpp>
@@ -11,11 +12,9 @@ namespace holdfast {
 
 namespace {
 
-constexpr int window = 9;           // px, of the sums of differences
-constexpr int max_difference = 40;  // grey levels
-constexpr int sixteenths = 16;      // of a pixel, the unit of OpenCV's disparities
-constexpr int eighths = 8;          // of a pixel of the full resolution, the same at half of it
-constexpr int step = 16;            // the number of disparities that OpenCV searches is a multiple of it
+constexpr int sixteenths = 16;  // of a pixel, the unit of OpenCV's disparities
+constexpr int eighths = 8;      // of a pixel of the full resolution, the same at half of it
+constexpr int step = 16;        // the number of disparities that OpenCV searches is a multiple of it
 
 /// The least number of disparities that OpenCV can search up to this one [px].
 int in_steps(double disparity) { return std::max(1, static_cast<int>(std::ceil(disparity / step))) * step; }
@@ -33,11 +32,6 @@ void halve(const cv::Mat& image, cv::Mat& half) {
   cv::resize(image, half, cv::Size(image.cols / 2, image.rows / 2), 0, 0, cv::INTER_AREA);
 }
 
-/// The disparity at half the resolution that belongs to a row of the full one.
-const std::int16_t* half_row(const cv::Mat& half, int row) {
-  return half.ptr<std::int16_t>(std::min(row / 2, half.rows - 1));
-}
-
 }  // namespace
 
 SemiGlobalStereo::SemiGlobalStereo(double max_disparity, int width)
@@ -49,9 +43,8 @@ void SemiGlobalStereo::match(const cv::Mat& left, const cv::Mat& right, cv::Mat&
   halve(left, half_left_);
   halve(right, half_right_);
   match_padded(*matcher_, half_left_, half_right_, needed_disparities(), half_disparity_);
-  left_ = left;
   right.convertTo(right_, CV_8U, 1.0, brightness_difference());
-  compare();
+  costs_.begin(left, right_, half_disparity_);
   refine(disparity);
   remove_occluded(disparity);
 }
@@ -105,42 +98,15 @@ int SemiGlobalStereo::brightness_difference() const {
   return total == 0 ? 0 : level - levels;
 }
 
-void SemiGlobalStereo::compare() {
-  const int rows = left_.rows, columns = left_.cols, last = half_disparity_.cols - 1;
-  for (cv::Mat& image : differences_) image.create(rows, columns, CV_8UC1);
-  for (int row = 0; row < rows; ++row) {
-    const std::uint8_t *left = left_.ptr<std::uint8_t>(row), *right = right_.ptr<std::uint8_t>(row);
-    const std::int16_t* disparity = half_row(half_disparity_, row);
-    std::array<std::uint8_t*, candidates> to{};
-    for (std::size_t k = 0; k < candidates; ++k) to[k] = differences_[k].ptr<std::uint8_t>(row);
-    for (int column = 0; column < columns; ++column) {
-      const int found = disparity[std::min(column / 2, last)], place = eighths * column - found;
-      const int whole = place >> 3, part = place & 7;
-      if (found < eighths || whole < reach || whole + reach + 1 >= columns) {
-        for (std::uint8_t* out : to) out[column] = max_difference;
-        continue;
-      }
-      for (int k = 0; k < candidates; ++k) {
-        const std::uint8_t* from = right + whole + reach - k;
-        const int value = (from[0] * (eighths - part) + from[1] * part + eighths / 2) / eighths;
-        to[static_cast<std::size_t>(k)][column] =
-            static_cast<std::uint8_t>(std::min(std::abs(left[column] - value), max_difference));
-      }
-    }
-  }
-  for (std::size_t k = 0; k < candidates; ++k)
-    cv::boxFilter(differences_[k], costs_[k], CV_16U, cv::Size(window, window), cv::Point(-1, -1), false);
-}
-
 void SemiGlobalStereo::refine(cv::Mat& disparity) {
-  constexpr int distinct = window * window / 4;  // a quarter of a grey level
-  const int rows = left_.rows, columns = left_.cols, last = half_disparity_.cols - 1;
+  constexpr int candidates = WindowCosts::candidates;
+  constexpr int distinct = WindowCosts::window * WindowCosts::window / 4;  // a quarter of a grey level
+  const int rows = right_.rows, columns = right_.cols, last = half_disparity_.cols - 1;
   disparity.create(rows, columns, CV_32FC1);
   least_.create(rows, columns, CV_16UC1);
   for (int row = 0; row < rows; ++row) {
-    const std::int16_t* half = half_row(half_disparity_, row);
-    std::array<const std::uint16_t*, candidates> cost{};
-    for (std::size_t k = 0; k < candidates; ++k) cost[k] = costs_[k].ptr<std::uint16_t>(row);
+    const std::int16_t* half = WindowCosts::half_row(half_disparity_, row);
+    const WindowCosts::Lanes* costs = costs_.next_row();
     float* to = disparity.ptr<float>(row);
     auto* least_to = least_.ptr<std::uint16_t>(row);
     for (int column = 0; column < columns; ++column) {
@@ -148,16 +114,14 @@ void SemiGlobalStereo::refine(cv::Mat& disparity) {
       least_to[column] = 0;
       const int found = half[std::min(column / 2, last)];
       if (found < eighths) continue;
-      std::uint32_t least_and_place = ~0U;  // no branches: the order of costs is random
-      for (std::uint32_t k = 0; k < candidates; ++k)
-        least_and_place = std::min(least_and_place, cost[k][column] * std::uint32_t{candidates} + k);
-      const std::size_t best = least_and_place % candidates;
+      const int best = WindowCosts::least_lane(costs[column]);
       if (best == 0 || best + 1 == candidates) continue;
-      const int least = cost[best][column], before = cost[best - 1][column] - least,
-                after = cost[best + 1][column] - least, rise = std::max(before, after);
+      const WindowCosts::Lanes cost = costs[column];
+      const int least = cost[best], before = cost[best + 1] - least, after = cost[best - 1] - least,
+                rise = std::max(before, after);
       if (rise <= distinct) continue;
       const float offset = 0.5F * static_cast<float>(before - after) / static_cast<float>(rise);
-      const float value = static_cast<float>(found) / eighths + static_cast<float>(best) - reach + offset;
+      const float value = static_cast<float>(found) / eighths + static_cast<float>(WindowCosts::reach - best) + offset;
       to[column] = std::max(value, 0.0F);
       least_to[column] = static_cast<std::uint16_t>(least);
     }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <opencv2/core.hpp>
 #include <vector>
 
 #include "holdfast/interfaces/dense_stereo.hpp"
+#include "window_costs.hpp"
 
 namespace cv {
 class StereoSGBM;
@@ -14,7 +14,7 @@ class StereoSGBM;
 namespace holdfast {
 
 /// Semi-global matching (Hirschmueller 2008, OpenCV's version in three directions) at half the resolution, refined at
-/// the full one: each disparity is compared with its neighbours up to `reach` pixels away by sums of absolute
+/// the full one: each disparity is compared with its neighbours up to two pixels away by sums of absolute
 /// differences, at equal brightness of both images, in windows that follow the disparities found, and the minimum is
 /// interpolated by two lines of equal slope (Shimizu and Okutomi 2001). Disparities are searched up to the largest that
 /// an eighth of the resolution shows, and also beside the left border, where OpenCV's version has none. No disparity
@@ -28,8 +28,6 @@ class SemiGlobalStereo final : public DenseStereo {
   void match(const cv::Mat& left, const cv::Mat& right, cv::Mat& disparity) override;
 
  private:
-  static constexpr int reach = 2, candidates = 2 * reach + 1;
-
   /// The number of disparities to be searched at half the resolution.
   int needed_disparities();
   /// OpenCV has no disparity in the first columns, as many as it searches disparities: both images get as many more.
@@ -38,7 +36,6 @@ class SemiGlobalStereo final : public DenseStereo {
   /// Median difference of the brightness of both images, left minus right, at the matches of half the resolution:
   /// exposures differ.
   int brightness_difference() const;
-  void compare();
   void refine(cv::Mat& disparity);
   void remove_occluded(cv::Mat& disparity);
 
@@ -47,8 +44,8 @@ class SemiGlobalStereo final : public DenseStereo {
   cv::Mat quarter_, coarse_left_, coarse_right_, coarse_disparity_;
   cv::Mat padded_left_, padded_right_, padded_disparity_;
   cv::Mat half_left_, half_right_, half_disparity_;  // the last one 16SC1 [1/16 px]
-  cv::Mat left_, right_;                             // 8UC1, of the same mean
-  std::array<cv::Mat, candidates> differences_, costs_;
+  cv::Mat right_;                                    // 8UC1, of the mean of the left image
+  WindowCosts costs_;
   cv::Mat least_;  // 16UC1: the least sum of differences of each pixel
   // Of a row: the column in the right image; the column of the left image with the least sum, by column of the right
   // image; columns to remove.
