@@ -592,6 +592,22 @@ TEST(Tracker, WithoutFeaturesDenseDepthSufficesForAWhile) {
   EXPECT_LE(frames, 15);  // 0.5 s
 }
 
+TEST(Tracker, PosesByDenseDepthAloneStayRigid) {
+  // Each is predicted from two before it, which multiplies rounding errors of the rotation.
+  TrackingSettings settings = without_relocalisation();
+  settings.depth_only_time = 3.0;
+  Bench bench(settings, true, {}, 5, with_fallback());
+  bench.walk(0.0, 0.5);
+  bench.extractor.every = 100000;  // nothing has texture
+  for (int i = 0; i < 60; ++i) {
+    const FrameResult result = bench.feed(0.5 + i / 30.0, at(Bench::speed * 0.5));
+    ASSERT_EQ(result.fallback, TrackingFallback::dense_depth) << i;
+    const Eigen::Matrix3d rotation = result.T_world_camera->linear();
+    ASSERT_LT((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12) << i;
+    ASSERT_LT(error(result, at(Bench::speed * 0.5)), 0.04) << i;
+  }
+}
+
 /// The camera turns to the right by `angle` [rad].
 Isometry3d turned(double angle) {
   Isometry3d T = Isometry3d::Identity();
