@@ -104,16 +104,18 @@ TEST(SurfaceEvaluation, LeavesOutWhatTheTruthDidNotObserve) {
 }
 
 TEST(SurfaceEvaluation, FindsTheBordersOfTrianglesWithoutCommonVertices) {
-  const TriangleMesh floor = floor_at(0.0, 10);
-  TriangleMesh soup;
-  for (const auto& t : floor.triangles) {
+  // A ridge, which is the nearest place of all that is above it, and no border.
+  TriangleMesh roof = floor_at(0.0, 10), soup;
+  for (MeshVertex& vertex : roof.vertices) vertex.position.z() = -std::abs(vertex.position.x() - 0.5F);
+  for (const auto& t : roof.triangles) {
     const auto first = static_cast<std::uint32_t>(soup.vertices.size());
-    for (const std::uint32_t corner : t) soup.vertices.push_back(floor.vertices[corner]);
+    for (const std::uint32_t corner : t) soup.vertices.push_back(roof.vertices[corner]);
     soup.triangles.push_back({first, first + 1, first + 2});
   }
+  TriangleMesh above = floor_at(0.2, 2, 0.4);
+  for (MeshVertex& vertex : above.vertices) vertex.position.y() += 0.4F;
   const auto nothing = [](const Eigen::Vector3d&) { return false; };
-  const SurfaceEvaluation result = evaluate_surface(soup, soup, floor_at(0.1, 10), {}, nothing);
-  EXPECT_LT(result.unobserved, 0.01) << "only what is beside the border has its nearest point there";
+  EXPECT_EQ(evaluate_surface(soup, soup, above, {}, nothing).unobserved, 0.0);
 }
 
 TEST(SurfaceEvaluation, MeasuresTheThicknessOfADoubledWall) {
