@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "holdfast/geometry/se3.hpp"
-
 namespace holdfast {
 
 MovingWorld::MovingWorld(MovingWorldParts parts, Map& map)
@@ -94,9 +92,7 @@ std::optional<Eigen::Isometry3d> MovingWorld::align_depth(const Frame& frame, co
   if (!depth_agreement_.choose(map_, reference, frame.timestamp)) return std::nullopt;
   const Eigen::Isometry3d aligned = depth_agreement_.align(frame, frame.coarse.T_view_world(predicted));
   if (depth_agreement_.unoccluded_share(frame, aligned) < limits.fallback_share) return std::nullopt;
-  // Where the next pose is predicted from two such poses, rounding errors of the rotation grow by 2.4 from frame to
-  // frame.
-  return geometry::orthonormalised(frame.coarse.T_view_camera.inverse() * aligned);
+  return frame.coarse.T_view_camera.inverse() * aligned;
 }
 
 void MovingWorld::end_frame(const Frame& frame, bool has_pose) {

@@ -592,22 +592,6 @@ TEST(Tracker, WithoutFeaturesDenseDepthSufficesForAWhile) {
   EXPECT_LE(frames, 15);  // 0.5 s
 }
 
-TEST(Tracker, PosesByDenseDepthAloneStayRigid) {
-  // Each is predicted from two before it, which multiplies rounding errors of the rotation.
-  TrackingSettings settings = without_relocalisation();
-  settings.depth_only_time = 3.0;
-  Bench bench(settings, true, {}, 5, with_fallback());
-  for (int i = 0; i < 70; ++i) {
-    if (i == 10) bench.extractor.every = 100000;  // nothing has texture any more
-    const FrameResult result = bench.feed(i / 30.0, at(0.0));
-    ASSERT_TRUE(result.T_world_camera) << i;
-    EXPECT_EQ(result.fallback, i < 10 ? TrackingFallback::none : TrackingFallback::dense_depth) << i;
-    const Eigen::Matrix3d rotation = result.T_world_camera->linear();
-    ASSERT_LT((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12) << i;
-    ASSERT_LT(error(result, at(0.0)), 0.04) << i;
-  }
-}
-
 /// The camera turns to the right by `angle` [rad].
 Isometry3d turned(double angle) {
   Isometry3d T = Isometry3d::Identity();
