@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <opencv2/core/utility.hpp>
@@ -23,6 +22,7 @@
 #include "holdfast/interfaces/segmenter.hpp"
 #include "holdfast/plugin/builtin.hpp"
 #include "holdfast/plugin/registry.hpp"
+#include "processor_time.hpp"
 
 namespace {
 
@@ -83,12 +83,6 @@ void unet(benchmark::State& state, const ParameterValues& settings) {
   state.counters["median_ms"] = 1e3 * median(times);
   state.counters["cv_orb_ms"] = 1e3 * median(reference_times);
   state.counters["to_cv_orb"] = median(times) / median(reference_times);
-}
-
-double processor_seconds() {
-  timespec now = {};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 /// Processor time of the U-Net by ONNX Runtime, relative to oneDNN, image by image in turn: the counter `to_onednn` is

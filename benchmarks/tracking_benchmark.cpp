@@ -6,7 +6,6 @@
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
-#include <ctime>
 #include <numeric>
 #include <opencv2/core/utility.hpp>
 #include <string>
@@ -19,6 +18,7 @@
 #include "holdfast/run/configured_pipeline.hpp"
 #include "holdfast/tracking/pair_depth.hpp"
 #include "orb_yardstick.hpp"
+#include "processor_time.hpp"
 
 namespace holdfast {
 namespace {
@@ -47,21 +47,6 @@ BuiltPipeline build_stereo(const std::string& extractor) {
   const std::string camera = data != nullptr ? "" : "camera: tum_fr3\n";
   return build("source: " + source + "\n" + camera + "features: " + extractor +
                "\noptimizer: schur\nrun: { mode: threaded }\n");
-}
-
-/// Processor time of the calling thread so far [s].
-double thread_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-/// Adds the processor time that `run` takes of the calling thread.
-template <class Run>
-void time(std::vector<double>& times, const Run& run) {
-  const double begin = thread_seconds();
-  run();
-  times.push_back(thread_seconds() - begin);
 }
 
 void tracking(benchmark::State& state, const std::string& extractor) {

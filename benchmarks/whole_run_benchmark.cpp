@@ -6,7 +6,6 @@
 
 #include <chrono>
 #include <cstdlib>
-#include <ctime>
 #include <opencv2/core/utility.hpp>
 #include <string>
 #include <string_view>
@@ -17,16 +16,10 @@
 #include "holdfast/plugin/builtin.hpp"
 #include "holdfast/run/configured_pipeline.hpp"
 #include "orb_yardstick.hpp"
+#include "processor_time.hpp"
 
 namespace holdfast {
 namespace {
-
-/// Time that all threads of this process have computed [s]; other programs do not count.
-double processor_seconds() {
-  std::timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 /// Adds up the processor time of calls.
 class ProcessorTime {

@@ -4,8 +4,11 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
+#include <functional>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,8 +16,11 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/nearest_rotation.hpp"
 #include "holdfast/core/trajectory.hpp"
+#include "holdfast/map_io/map_file.hpp"
 #include "holdfast/surface/mesh_files.hpp"
+#include "holdfast/surface/observed_space.hpp"
 #include "holdfast/surface/surface_evaluation.hpp"
+#include "holdfast/surface/surface_views.hpp"
 #include "output_file.hpp"
 #include "positive_number.hpp"
 #include "terminal.hpp"
@@ -25,7 +31,7 @@ namespace holdfast {
 namespace {
 
 struct EvaluateSurfaceArguments {
-  std::string truth, mesh, seen;
+  std::string truth, mesh, seen, truth_run;
   std::string truth_trajectory, trajectory;
   std::string json, csv, errors_to;
   double error_scale = 0.05;
@@ -48,6 +54,9 @@ Definitions
   thickness         with --thickness: distance between the outermost estimated surfaces along the normal of the truth,
                     searched up to that distance on both sides; above 0 where drift doubled a wall. Of the places at
                     which one true surface and an estimated one face the same side
+  unobserved        with --truth-run, the folder of the run with surface.keep_depth that made TRUTH: share of the estimate
+                    that is not compared, because it lies beyond a border of TRUTH, where that run did not look. Its
+                    nearest place is on the border, farther than --threshold, and no view of the run looked through it
 Distances are exact, from points with a distance of --spacing on one surface to the triangles of the other.
 
 Both meshes must be in one world frame, unless the trajectories in both frames are given: the rigid motion that
@@ -56,7 +65,8 @@ aligns their poses, rotations included, is then applied to MESH.
 Examples
   holdfast evaluate-surface room.ply out/surface.ply --seen seen.ply \
     --truth-trajectory groundtruth.txt --trajectory out/trajectory.txt
-  holdfast evaluate-surface without_people.ply with_people.ply --threshold 0.02 --json -
+  holdfast evaluate-surface without/surface.ply with/surface.ply --threshold 0.02 --truth-run without \
+    --truth-trajectory without/trajectory.txt --trajectory with/trajectory.txt
   holdfast evaluate-surface room.ply out/surface.ply --errors errors.ply
 )";
 
@@ -89,6 +99,11 @@ void transform(TriangleMesh& mesh, const Eigen::Isometry3d& motion) {
   }
 }
 
+ObservedSpace observed_space_of(const std::filesystem::path& run) {
+  const Map map = read_map(run / "map.hfm");
+  return ObservedSpace(read_views(run / "surface_views", map), map);
+}
+
 void evaluate(const EvaluateSurfaceArguments& arguments) {
   if (arguments.truth_trajectory.empty() != arguments.trajectory.empty())
     throw UsageError("--truth-trajectory and --trajectory belong together; give both, or none");
@@ -101,8 +116,12 @@ void evaluate(const EvaluateSurfaceArguments& arguments) {
   TriangleMesh mesh = read_mesh(arguments.mesh);
   if (!arguments.trajectory.empty())
     transform(mesh, alignment_of(read_trajectory(arguments.truth_trajectory), read_trajectory(arguments.trajectory)));
+  std::optional<ObservedSpace> space;
+  if (!arguments.truth_run.empty()) space.emplace(observed_space_of(arguments.truth_run));
+  const auto is_free = [&](const Eigen::Vector3d& point) { return space->is_free(point); };
   const SurfaceEvaluation result =
-      evaluate_surface(truth, arguments.seen.empty() ? truth : seen, mesh, arguments.options);
+      evaluate_surface(truth, arguments.seen.empty() ? truth : seen, mesh, arguments.options,
+                       space ? std::function<bool(const Eigen::Vector3d&)>(is_free) : nullptr);
   if (arguments.json != "-" && arguments.csv != "-") std::cout << bold_labels(to_text(result), STDOUT_FILENO);
   if (!arguments.json.empty()) write_output(arguments.json, to_json(result));
   if (!arguments.csv.empty()) write_output(arguments.csv, to_csv(result));
@@ -121,6 +140,10 @@ void add_evaluate_surface_command(CLI::App& app, int& exit_code) {
   command->add_option("MESH", arguments->mesh, "The estimated surface (PLY)")->required();
   command->add_option("--seen", arguments->seen, "The part of the truth that can be complete (PLY); otherwise all")
       ->type_name("FILE");
+  command
+      ->add_option("--truth-run", arguments->truth_run,
+                   "Folder of the run that made TRUTH; the estimate beyond what it observed is not compared")
+      ->type_name("FOLDER");
   command->add_option("--truth-trajectory", arguments->truth_trajectory, "Poses in the frame of TRUTH, TUM format")
       ->type_name("FILE");
   command->add_option("--trajectory", arguments->trajectory, "The same poses in the frame of MESH")->type_name("FILE");

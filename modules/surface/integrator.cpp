@@ -216,6 +216,9 @@ Integrator::Integrator(const ViewImage& image, const Eigen::Isometry3d& T_world_
   translation_ = T_camera_world.translation().cast<float>();
   const Camera& camera = image.camera();
   view_.voxel = static_cast<float>(settings.voxel);
+  const float half = 0.5F * view_.voxel * Block::side;
+  centre_ = rotation_ * Eigen::Vector3f::Constant(half);
+  half_ = rotation_.cwiseAbs() * Eigen::Vector3f::Constant(half);
   view_.truncation = static_cast<float>(settings.truncation * settings.voxel);
   Eigen::Map<Eigen::Matrix3f>(view_.rotation) = rotation_ * view_.voxel;
   view_.fx = static_cast<float>(camera.fx), view_.fy = static_cast<float>(camera.fy);
@@ -256,26 +259,33 @@ float Integrator::margin_at(float depth) const {
 }
 
 Integrator::Reach Integrator::reach_of(const Eigen::Vector3f& corner) const {
-  const float half = 0.5F * view_.voxel * Block::side;
-  const Eigen::Vector3f centre = corner + rotation_ * Eigen::Vector3f::Constant(half);
-  const float radius = half * 1.7321F;
-  const float nearest = centre.z() - radius;
-  if (centre.z() + radius < nearest_depth) return Reach::nothing;
-  // Close to the camera the projection of the sphere may be unbounded.
+  constexpr float rounding = 0.01F;  // [px]
+  const Eigen::Vector3f centre = corner + centre_;
+  const float nearest = centre.z() - half_.z(), last = centre.z() + half_.z();
+  if (last < nearest_depth) return Reach::nothing;
+  // Close to the camera the projection of the box may be unbounded.
   if (nearest < nearest_depth) return Reach::something;
-  const float u = view_.fx * centre.x() / centre.z() + view_.cx, v = view_.fy * centre.y() / centre.z() + view_.cy;
-  const float reach = 1.5F * std::max(view_.fx, view_.fy) * radius / nearest + 1.0F;
-  if (u + reach < 0.0F || v + reach < 0.0F || u - reach > view_.width || v - reach > view_.height)
-    return Reach::nothing;
-  const int right = static_cast<int>(u + reach), bottom = static_cast<int>(v + reach);
-  const float farthest = image_.farthest(static_cast<int>(std::max(u - reach, 0.0F)),
-                                         static_cast<int>(std::max(v - reach, 0.0F)), right, bottom);
+  const float of_nearest = 1.0F / nearest, of_last = 1.0F / last;
+  const auto lower = [&](float side, float focal_length, float principal_point) {
+    return focal_length * side * (side < 0.0F ? of_nearest : of_last) + principal_point - rounding;
+  };
+  const auto upper = [&](float side, float focal_length, float principal_point) {
+    return focal_length * side * (side < 0.0F ? of_last : of_nearest) + principal_point + rounding;
+  };
+  const float left = lower(centre.x() - half_.x(), view_.fx, view_.cx);
+  const float top = lower(centre.y() - half_.y(), view_.fy, view_.cy);
+  const float right = upper(centre.x() + half_.x(), view_.fx, view_.cx);
+  const float bottom = upper(centre.y() + half_.y(), view_.fy, view_.cy);
+  if (right < 0.0F || bottom < 0.0F || left > view_.width || top > view_.height) return Reach::nothing;
+  const int right_pixel = static_cast<int>(right), bottom_pixel = static_cast<int>(bottom);
+  const float farthest = image_.farthest(static_cast<int>(std::max(left, 0.0F)), static_cast<int>(std::max(top, 0.0F)),
+                                         right_pixel, bottom_pixel);
   if (farthest <= 0.0F || nearest >= farthest + view_.truncation / ViewImage::smallest_slope) return Reach::nothing;
   if (!image_.only_carves()) return Reach::something;
-  const float last = centre.z() + radius;
   if (nearest > farthest + margin_at(last)) return Reach::nothing;
-  const int left = static_cast<int>(std::floor(u - reach)), top = static_cast<int>(std::floor(v - reach));
-  return image_.nearest(left, top, right, bottom) - last > margin_at(last) ? Reach::all_free : Reach::something;
+  const int left_pixel = static_cast<int>(std::floor(left)), top_pixel = static_cast<int>(std::floor(top));
+  return image_.nearest(left_pixel, top_pixel, right_pixel, bottom_pixel) - last > margin_at(last) ? Reach::all_free
+                                                                                                   : Reach::something;
 }
 
 }  // namespace holdfast::surface

@@ -46,6 +46,7 @@ class Integrator {
   ViewGeometry view_;
   Eigen::Matrix3f rotation_;
   Eigen::Vector3f translation_;
+  Eigen::Vector3f centre_, half_;  // of a block in the camera's axes, relative to its corner; half the sides of its box
   void (*update_voxels_)(const ViewGeometry& view, const float* corner, Block& block);
   void (*carve_all_)(const ViewGeometry& view, const float* corner, Block& block);
 };

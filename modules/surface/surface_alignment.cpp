@@ -88,10 +88,9 @@ std::optional<Eigen::Isometry3d> align_with_surface(const SurfaceField& field, c
   }
   const Equations last(field, points, T_world_view);
   if (last.on_surface < fewest_cells || last.on_surface < least_agreement * last.near) return std::nullopt;
-  // Errors of the rotation's orthogonality grow by a factor of 2.4 from frame to frame where the next pose is predicted
-  // from two such poses.
-  T_world_view.linear() = Eigen::Quaterniond(T_world_view.linear()).normalized().toRotationMatrix();
-  return T_world_view.inverse();
+  // Where the next pose is predicted from two such poses, rounding errors of the rotation grow by 2.4 from frame to
+  // frame.
+  return geometry::orthonormalised(T_world_view).inverse();
 }
 
 }  // namespace holdfast

@@ -7,11 +7,13 @@
 #include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/surface/triangle_tree.hpp"
+#include "mesh_border.hpp"
 
 namespace holdfast {
 
@@ -43,16 +45,26 @@ std::vector<SurfacePoint> points_on(const TriangleMesh& mesh, double spacing) {
 
 struct Distances {
   double mean = 0.0, median = 0.0, share_within = 0.0, share_beyond = 0.0, normal_agreement = 0.0;
-  std::size_t points = 0;
+  std::size_t points = 0;   // that were compared
+  double unobserved = 0.0;  // share of all
 };
 
-Distances distances(const TriangleMesh& from, const TriangleMesh& to, const SurfaceEvaluationOptions& options) {
+using FreeTest = std::function<bool(const Eigen::Vector3d&)>;
+
+Distances distances(const TriangleMesh& from, const TriangleMesh& to, const SurfaceEvaluationOptions& options,
+                    const FreeTest& is_free = {}) {
   const TriangleTree tree(to);
+  const std::optional<surface::MeshBorder> border = is_free ? std::optional<surface::MeshBorder>(to) : std::nullopt;
   std::vector<double> all;
-  std::size_t within = 0, beyond = 0;
+  std::size_t within = 0, beyond = 0, unobserved = 0;
   double cosines = 0.0;
   for (const SurfacePoint& point : points_on(from, options.spacing)) {
     const TriangleTree::Nearest nearest = tree.nearest(point.position);
+    if (border && nearest.distance > options.threshold && border->contains(nearest.triangle, nearest.point) &&
+        !is_free(point.position)) {
+      ++unobserved;
+      continue;
+    }
     all.push_back(nearest.distance);
     if (nearest.distance > options.ghost_distance) ++beyond;
     if (nearest.distance > options.threshold) continue;
@@ -62,6 +74,8 @@ Distances distances(const TriangleMesh& from, const TriangleMesh& to, const Surf
   }
   Distances result;
   result.points = all.size();
+  if (unobserved > 0)
+    result.unobserved = static_cast<double>(unobserved) / static_cast<double>(all.size() + unobserved);
   if (all.empty()) return result;
   const auto count = static_cast<double>(all.size());
   for (const double distance : all) result.mean += distance / count;
@@ -131,6 +145,7 @@ std::vector<std::pair<const char*, double>> figures(const SurfaceEvaluation& e) 
                                                         {"chamfer", e.chamfer},
                                                         {"normal_agreement", e.normal_agreement},
                                                         {"ghosts", e.ghosts},
+                                                        {"unobserved", e.unobserved},
                                                         {"truth_area", e.truth_area},
                                                         {"estimate_area", e.estimate_area},
                                                         {"threshold", e.options.threshold},
@@ -149,17 +164,19 @@ std::vector<std::pair<const char*, double>> figures(const SurfaceEvaluation& e) 
 }  // namespace
 
 SurfaceEvaluation evaluate_surface(const TriangleMesh& truth, const TriangleMesh& seen, const TriangleMesh& estimate,
-                                   const SurfaceEvaluationOptions& options) {
+                                   const SurfaceEvaluationOptions& options, const FreeTest& is_free) {
   require_area(truth, "truth", options.spacing);
   require_area(seen, "seen part of the truth", options.spacing);
   require_area(estimate, "estimate", options.spacing);
-  const Distances to_truth = distances(estimate, truth, options), to_estimate = distances(seen, estimate, options);
+  const Distances to_truth = distances(estimate, truth, options, is_free);
+  const Distances to_estimate = distances(seen, estimate, options);
   SurfaceEvaluation result;
   result.options = options;
   result.accuracy = to_truth.mean;
   result.accuracy_median = to_truth.median;
   result.precision = to_truth.share_within;
   result.ghosts = to_truth.share_beyond;
+  result.unobserved = to_truth.unobserved;
   result.normal_agreement = to_truth.normal_agreement;
   result.completion = to_estimate.mean;
   result.completion_median = to_estimate.median;
@@ -202,6 +219,9 @@ std::string to_text(const SurfaceEvaluation& e) {
   add("normals     %.3f mean cosine\n", e.normal_agreement);
   add("ghosts      %.3f %% of the estimate is farther than %.3g cm from the truth\n", 100 * e.ghosts,
       100 * e.options.ghost_distance);
+  if (e.unobserved > 0.0)
+    add("unobserved  %.2f %% of the estimate lies beyond the borders of the truth and is not compared\n",
+        100 * e.unobserved);
   if (e.thickness_points > 0)
     add("thickness   %.2f cm mean, %.2f cm at 99 %%; %.2f %% of the %zu places compared have two surfaces\n",
         100 * e.thickness_mean, 100 * e.thickness_99, 100 * e.doubled, e.thickness_points);

@@ -74,6 +74,50 @@ TEST(SurfaceEvaluation, MeasuresOffsetHolesAndGhosts) {
   EXPECT_EQ(evaluate_surface(truth, seen, estimate, {}).completion_ratio, 1.0);
 }
 
+TEST(SurfaceEvaluation, LeavesOutWhatTheTruthDidNotObserve) {
+  // The truth ends at x = 0.5 m; the estimate goes on to 1 m. It is bent upwards within the truth, over a fifth of it.
+  const TriangleMesh truth = floor_at(0.0, 5);
+  TriangleMesh estimate = floor_at(0.0, 10);
+  std::erase_if(estimate.triangles, [&](const auto& t) { return estimate.vertices[t[0]].position.y() > 0.45F; });
+  TriangleMesh ghost = floor_at(0.3, 10);  // of 0.1 x 0.5 m over the middle, and of 0.1 x 0.5 m beyond the border
+  std::erase_if(ghost.triangles, [&](const auto& t) {
+    const Eigen::Vector3f& corner = ghost.vertices[t[0]].position;
+    return corner.y() > 0.45F || (std::abs(corner.x() - 0.2F) > 0.01F && std::abs(corner.x() - 0.7F) > 0.01F);
+  });
+  append(estimate, ghost);
+  const auto nothing = [](const Eigen::Vector3d&) { return false; };
+  const auto above = [](const Eigen::Vector3d& point) { return point.z() > 0.1; };
+  const SurfaceEvaluation raw = evaluate_surface(truth, truth, estimate, {});
+  EXPECT_EQ(raw.unobserved, 0.0);
+  EXPECT_NEAR(raw.precision, 0.275 / 0.6, 0.01);
+  // Beyond the border neither the floor nor the ghost counts; over the truth the ghost does.
+  const SurfaceEvaluation closed = evaluate_surface(truth, truth, estimate, {}, nothing);
+  EXPECT_NEAR(closed.unobserved, 0.275 / 0.6, 0.01);
+  EXPECT_NEAR(closed.ghosts, 0.05 / 0.325, 0.01);
+  EXPECT_NEAR(closed.precision, 0.275 / 0.325, 0.01);
+  // What the truth looked through counts.
+  const SurfaceEvaluation open = evaluate_surface(truth, truth, estimate, {}, above);
+  EXPECT_NEAR(open.ghosts, 0.1 / 0.375, 0.01);
+  EXPECT_EQ(open.completion, raw.completion);
+  EXPECT_THAT(to_text(open), testing::HasSubstr("unobserved  "));
+  EXPECT_THAT(to_json(open), testing::HasSubstr("\"unobserved\": 0.3"));
+}
+
+TEST(SurfaceEvaluation, FindsTheBordersOfTrianglesWithoutCommonVertices) {
+  // A ridge, which is the nearest place of all that is above it, and no border.
+  TriangleMesh roof = floor_at(0.0, 10), soup;
+  for (MeshVertex& vertex : roof.vertices) vertex.position.z() = -std::abs(vertex.position.x() - 0.5F);
+  for (const auto& t : roof.triangles) {
+    const auto first = static_cast<std::uint32_t>(soup.vertices.size());
+    for (const std::uint32_t corner : t) soup.vertices.push_back(roof.vertices[corner]);
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  TriangleMesh above = floor_at(0.2, 2, 0.4);
+  for (MeshVertex& vertex : above.vertices) vertex.position.y() += 0.4F;
+  const auto nothing = [](const Eigen::Vector3d&) { return false; };
+  EXPECT_EQ(evaluate_surface(soup, soup, above, {}, nothing).unobserved, 0.0);
+}
+
 TEST(SurfaceEvaluation, MeasuresTheThicknessOfADoubledWall) {
   // A quarter of the floor is there twice, 6 cm apart. What faces the other side does not count, nor does the floor
   // where the truth itself has two surfaces.

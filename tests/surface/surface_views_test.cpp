@@ -12,6 +12,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/surface/mesh_files.hpp"
+#include "holdfast/surface/observed_space.hpp"
 #include "map_io/random_map.hpp"
 #include "surface/solid_world.hpp"
 
@@ -97,6 +98,18 @@ TEST_F(SurfaceViewsTest, AreReadAsTheyWereWritten) {
       EXPECT_EQ(cv::norm(a.colour, b.colour, cv::NORM_INF), 0.0);
     }
   }
+}
+
+TEST_F(SurfaceViewsTest, SayWhatTheyLookedThrough) {
+  // Pixels of dynamic objects as well.
+  for (KeptView& view : views_.views) view.depth |= cv::Scalar(KeptView::moves_bit);
+  const ObservedSpace space(views_, map_);
+  EXPECT_TRUE(space.is_free({0.0, 0.0, 0.8})) << "before the ball";
+  EXPECT_TRUE(space.is_free({0.9, 0.0, 2.0})) << "beside it";
+  EXPECT_FALSE(space.is_free({0.9, 0.0, 2.45})) << "nearer to the wall than the truncation";
+  EXPECT_FALSE(space.is_free({0.0, 0.0, 2.2})) << "behind the ball";
+  EXPECT_FALSE(space.is_free({0.0, 0.0, -0.5})) << "behind the camera";
+  EXPECT_FALSE(space.is_free({4.0, 0.0, 2.0})) << "beside the image";
 }
 
 TEST_F(SurfaceViewsTest, KeepTheClassesOfTheirPixels) {

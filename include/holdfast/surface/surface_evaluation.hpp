@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <string>
 
 #include "holdfast/surface/triangle_mesh.hpp"
@@ -29,6 +31,7 @@ struct SurfaceEvaluation {
   double chamfer = 0.0;            ///< mean of accuracy and completion [m]
   double normal_agreement = 0.0;   ///< mean absolute cosine of the angle between the normals, within the threshold
   double ghosts = 0.0;             ///< share of the estimate farther from the truth than ghost_distance, 0 to 1
+  double unobserved = 0.0;         ///< share of the estimate that was not compared, 0 to 1: see evaluate_surface()
   /// Distance between the outermost of the estimated surfaces that lie along the normal of the truth within
   /// thickness_reach, and face the same side: 0 = one surface. Of the thickness_points points of `seen` at which the
   /// truth has one surface, and the estimate has one at least [m]; NaN if there are none.
@@ -44,8 +47,14 @@ struct SurfaceEvaluation {
 /// Temples, TOG 2017, with triangles in place of points). `seen` is the part of the truth that an estimate could
 /// contain, for completion; accuracy and ghosts refer to all of `truth`. Deterministic. Throws Error for a mesh without
 /// area.
+///
+/// A truth that was measured itself, such as the surface of another run, has borders where its own views end. With
+/// `is_free`, which says whether they looked through a point, the estimate beyond these borders does not count (as in
+/// Schoeps et al., ETH3D, CVPR 2017): points farther than the threshold whose nearest point of the truth is on its
+/// border (Turk and Levoy, SIGGRAPH 1994), and that are not free.
 SurfaceEvaluation evaluate_surface(const TriangleMesh& truth, const TriangleMesh& seen, const TriangleMesh& estimate,
-                                   const SurfaceEvaluationOptions& options);
+                                   const SurfaceEvaluationOptions& options,
+                                   const std::function<bool(const Eigen::Vector3d&)>& is_free = {});
 
 /// Colours the vertices of a mesh by their distance to the truth: blue 0, green half of `scale`, red `scale` [m] and
 /// more.
