@@ -15,8 +15,9 @@ namespace {
 
 constexpr std::size_t max_samples = 240000;
 constexpr double max_link = 5.0;  // [s]
-/// Standard deviations of the biases where a chain begins [rad/s], [m/s^2].
-constexpr double gyroscope_deviation = 0.003, accelerometer_deviation = 0.03;
+/// Smallest standard deviations of the biases where a chain begins [rad/s], [m/s^2]: those of tracking are too small,
+/// because its errors are correlated.
+constexpr double min_gyroscope_deviation = 0.003, min_accelerometer_deviation = 0.03;
 
 bool is_earlier(const ImuSample& sample, double time) { return sample.timestamp < time; }
 
@@ -58,8 +59,10 @@ std::array<Eigen::Vector3d, 2> velocities(const Eigen::Isometry3d& first, const 
   return {begin, begin + time * gravity + first.linear() * delta.velocity};
 }
 
-BundleFactors::MotionPrior bias_prior(std::uint32_t motion, const ImuBias& bias) {
-  BundleFactors::MotionPrior prior{.motion = motion, .bias = bias, .information = {}};
+BundleFactors::MotionPrior bias_prior(std::uint32_t motion, const MapInertia& estimates) {
+  BundleFactors::MotionPrior prior{.motion = motion, .bias = estimates.bias, .information = {}};
+  const double gyroscope_deviation = std::max(estimates.gyroscope_deviation, min_gyroscope_deviation);
+  const double accelerometer_deviation = std::max(estimates.accelerometer_deviation, min_accelerometer_deviation);
   Eigen::Matrix<double, 9, 1> information = Eigen::Matrix<double, 9, 1>::Zero();
   information.segment<3>(3).setConstant(1.0 / (gyroscope_deviation * gyroscope_deviation));
   information.tail<3>().setConstant(1.0 / (accelerometer_deviation * accelerometer_deviation));
@@ -195,7 +198,7 @@ std::vector<std::uint8_t> add_inertial_factors(BundleProblem& problem, std::span
     const std::uint32_t first = motion(link.first, begin), second = motion(link.second, end);
     factors.motions[first].velocity = begin;
     factors.inertial.push_back({first, second, link.measured});
-    if (begins_chain) factors.motion_priors.push_back(bias_prior(first, estimates->bias));
+    if (begins_chain) factors.motion_priors.push_back(bias_prior(first, *estimates));
   }
   return is_linked;
 }

@@ -9,6 +9,7 @@
 #include "holdfast/interfaces/frame_observations.hpp"
 #include "map_motion.hpp"
 #include "piece_set.hpp"
+#include "weak_ties.hpp"
 
 namespace holdfast {
 namespace {
@@ -60,8 +61,9 @@ std::vector<KeyFrameId> placeable_keyframes(const Map& map, const Neighbours& ne
 constexpr int few_points = 4 * minimum_shared_points;
 
 /// By keyframe slot, the island of each keyframe: those that covisibility joins, by as many points as an adjustment
-/// requires, or a link. Islands are named by the slot of their oldest keyframe.
-std::vector<std::uint32_t> find_islands(const Map& map, const Neighbours& neighbours) {
+/// requires or `min_points`, or a link. Islands are named by the slot of their oldest keyframe.
+std::vector<std::uint32_t> find_islands(const Map& map, const Neighbours& neighbours,
+                                        int min_points = minimum_shared_points) {
   constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> island(map.keyframes().slot_count(), none);
   std::vector<KeyFrameId> reached;
@@ -78,7 +80,7 @@ std::vector<std::uint32_t> find_islands(const Map& map, const Neighbours& neighb
         reached.push_back(id);
       };
       for (const CovisibilityEdge& edge : map.keyframe(from).covisible)
-        if (edge.weight >= minimum_shared_points) reach(edge.keyframe);
+        if (edge.weight >= min_points) reach(edge.keyframe);
       for (const KeyFrameId id : neighbours[from.slot])
         if (id.valid()) reach(id);
     }
@@ -200,6 +202,11 @@ void FullAdjustment::copy_poses() {
   const std::vector<std::uint8_t> holds = find_island_holders(map_, neighbours);
   const std::vector<std::uint8_t> holds_without_links =
       links_.empty() ? holds : find_island_holders(map_, Neighbours(neighbours.size()));
+  cluster_.clear();
+  if (!links_.empty()) {
+    const auto clusters = find_islands(map_, Neighbours(neighbours.size()), 2 * minimum_shared_points);
+    for (const KeyFrameId id : keyframes_) cluster_.push_back(clusters[id.slot]);
+  }
   SubmapSet submaps;
   for (const KeyFrameId id : keyframes_) {
     const KeyFrame& keyframe = map_.keyframe(id);
@@ -234,7 +241,7 @@ void FullAdjustment::solve() {
   summary_.points = static_cast<int>(problem_.points.size());
   summary_.observations = static_cast<int>(problem_.observations.size());
   if (problem_.camera == nullptr) return;
-  summary_.bundle = optimizer_.optimize_bundle(problem_, stop_);
+  summary_.bundle = problem_.factors.empty() ? optimizer_.optimize_bundle(problem_, stop_) : solve_with_inertia();
   if (!summary_.bundle.usable && !stop_ && !problem_.factors.empty()) {
     problem_.factors = BundleFactors();
     is_linked_.assign(is_linked_.size(), 0);
@@ -244,6 +251,25 @@ void FullAdjustment::solve() {
   summary_.seconds_per_iteration = summary_.bundle.seconds / std::max(1, summary_.bundle.iterations);
   if (const std::int64_t asked = stop_time_)
     summary_.stop_seconds = static_cast<double>(now_in_nanoseconds() - asked) * 1e-9;
+}
+
+/// The first solution, without weak ties, tells which of them are right.
+BundleSummary FullAdjustment::solve_with_inertia() {
+  WeakTies ties;
+  if (const std::optional<MapInertia> estimates = inertia_->estimates()) ties.take_out(problem_, cluster_, *estimates);
+  const BundleSummary first = optimizer_.optimize_bundle(problem_, stop_);
+  if (ties.empty()) return first;
+  if (!first.usable || stop_) {
+    ties.put_back_all(problem_);
+    return first;
+  }
+  ties.put_back_agreeing(problem_);
+  BundleSummary second = optimizer_.optimize_bundle(problem_, stop_);
+  ties.add_rejected(problem_);
+  second.iterations += first.iterations;
+  second.seconds += first.seconds;
+  second.initial_cost = first.initial_cost;
+  return second;
 }
 
 FullAdjustmentSummary FullAdjustment::apply() {

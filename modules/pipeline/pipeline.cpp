@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/pipeline/pipeline.hpp"
 
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <opencv2/core.hpp>
@@ -148,12 +149,13 @@ struct Pipeline::State {
   void accept(const SensorFrame& frame);
   void check_stamp(const SensorFrame& frame) const;
   void keep_imu(const SensorFrame& frame);
-  /// Notes a frame whose pose drifts: odometry does so too, and follows people where hardly anything else is seen. A
-  /// keyframe is placed by the adjustments of the map.
+  /// Notes a frame whose pose drifts: odometry does so too, and follows people where hardly anything else is seen.
   void note_bridge(const FrameResult& result) {
     const bool drifts = result.status == TrackingStatus::inertial || result.fallback == TrackingFallback::odometry;
-    if (inertia && drifts && !result.is_keyframe) bridged.push_back(result.timestamp);
+    if (inertia && drifts) (result.is_keyframe ? drifting.keyframes : drifting.frames).push_back(result.timestamp);
   }
+  /// After the last adjustment of the map, which places keyframes.
+  void smooth_bridges() HOLDFAST_EXCLUDES(map);
   /// What the sensor of this pipeline has of a frame, in colour where a part needs that.
   SensorFrame used_images(const SensorFrame& given) const;
   /// Gives the frame that is tracked the depth image of its pair, if there is one and something needs it.
@@ -191,8 +193,9 @@ struct Pipeline::State {
   Stopwatch since_start;                   ///< the clock of health
   std::vector<ImuSample> imu;              ///< the first minutes, for warnings
   std::optional<InertialHistory> inertia;  ///< for adjustments
-  std::vector<double> bridged;             ///< time stamps of frames that no view of the map places [s]
-  KeyframeFlow flow;                       // last: its threads end before the others go
+  DriftingPoses drifting;                  ///< for the smoothing at the end
+  std::atomic<bool> is_interrupted{false};
+  KeyframeFlow flow;  // last: its threads end before the others go
 };
 
 void Pipeline::State::accept(const SensorFrame& frame) {
@@ -276,6 +279,16 @@ KeyFrameId Pipeline::State::insert_keyframe(const LockedMap& locked, const MapRe
   return first_keyframe;
 }
 
+void Pipeline::State::smooth_bridges() {
+  if (!inertia || is_interrupted) return;
+  const LoopRecord record = flow.loop_record();
+  if (!record.adjustments.empty() && record.adjustments.back().applied) drifting.keyframes.clear();
+  const LockedMap locked(map, LockPriority::background);
+  const std::optional<MapInertia> adjusted = inertia->estimates();
+  if (adjusted && locked->inertia()) locked->set_inertia(adjusted);
+  tracker.smooth_bridges(locked, drifting, *inertia, *parts.optimizer);
+}
+
 Pipeline::Pipeline(PipelineParts parts) : state_(std::make_unique<State>(checked(std::move(parts)))) {}
 Pipeline::~Pipeline() {
   if (state_) interrupt();
@@ -337,12 +350,7 @@ void Pipeline::finish() {
     s.flow.keep_submap(locked, submap);
   }
   s.flow.adjust_after_last_loop();
-  if (s.inertia) {
-    const LockedMap locked(s.map, LockPriority::background);
-    const std::optional<MapInertia> adjusted = s.inertia->estimates();
-    if (adjusted && locked->inertia()) locked->set_inertia(adjusted);
-    s.tracker.smooth_bridges(locked, s.bridged, *s.inertia, *s.parts.optimizer);
-  }
+  s.smooth_bridges();
   s.flow.finish_surface();
   if (s.keeps_classes()) s.map.unshared().classify_points();
   for (const auto& observer : s.parts.observers) observer->on_finish(s.map.unshared());
@@ -353,6 +361,7 @@ PipelineHealth Pipeline::health(double patience) const {
 }
 
 void Pipeline::interrupt() {
+  state_->is_interrupted = true;
   state_->flow.request_stop();
   for (const auto& observer : state_->parts.observers) observer->interrupt();
 }

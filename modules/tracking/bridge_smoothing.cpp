@@ -11,8 +11,11 @@ namespace holdfast {
 namespace {
 
 constexpr double margin_seconds = 0.5;  // of tracked frames on both sides [s]
-/// Standard deviations of the poses of tracked frames [m], [rad].
-constexpr double position_deviation = 0.003, rotation_deviation = 0.002;
+/// Standard deviations of poses [m], [rad].
+struct Deviations {
+  double position = 0.0, rotation = 0.0;
+};
+constexpr Deviations of_tracked_frames{0.003, 0.002}, of_drifting_keyframes{0.3, 0.1};
 
 /// A bridge with its margins: frames `begin` to `end` - 1 of a trajectory.
 struct Window {
@@ -37,21 +40,24 @@ std::vector<Window> find_windows(const Trajectory& trajectory, const std::vector
   return windows;
 }
 
-BundleFactors::PosePrior prior_of(std::uint32_t pose, const Eigen::Isometry3d& T_camera_world) {
+BundleFactors::PosePrior prior_of(std::uint32_t pose, const Eigen::Isometry3d& T_camera_world,
+                                  const Deviations& deviations) {
   geometry::Vector6d information;
-  information.head<3>().setConstant(1.0 / (position_deviation * position_deviation));
-  information.tail<3>().setConstant(1.0 / (rotation_deviation * rotation_deviation));
+  information.head<3>().setConstant(1.0 / (deviations.position * deviations.position));
+  information.tail<3>().setConstant(1.0 / (deviations.rotation * deviations.rotation));
   return {pose, T_camera_world, information.asDiagonal()};
 }
 
 }  // namespace
 
-std::size_t smooth_bridges(FrameHistory& history, const Map& map, std::span<const double> bridged,
+std::size_t smooth_bridges(FrameHistory& history, const Map& map, const DriftingPoses& drifting,
                            const InertialHistory& inertia, Optimizer& optimizer) {
   const Trajectory trajectory = history.trajectory(map);
+  const auto contains = [](const std::vector<double>& stamps, double stamp) {
+    return std::binary_search(stamps.begin(), stamps.end(), stamp);
+  };
   std::vector<std::uint8_t> is_bridged;
-  for (const TimedPose& pose : trajectory)
-    is_bridged.push_back(std::binary_search(bridged.begin(), bridged.end(), pose.timestamp) ? 1 : 0);
+  for (const TimedPose& pose : trajectory) is_bridged.push_back(contains(drifting.frames, pose.timestamp) ? 1 : 0);
   const std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
   if (keyframes.empty() || history.main_submap(map) != inertia.submap()) return 0;
   std::size_t count = 0;
@@ -63,7 +69,10 @@ std::size_t smooth_bridges(FrameHistory& history, const Map& map, std::span<cons
     for (std::size_t i = window.begin; i < window.end; ++i) {
       const Eigen::Isometry3d T_camera_world = trajectory[i].T_world_camera.inverse();
       const auto pose = static_cast<std::uint32_t>(i - window.begin);
-      if (is_bridged[i] == 0) problem.factors.pose_priors.push_back(prior_of(pose, T_camera_world));
+      const bool drifts = contains(drifting.keyframes, trajectory[i].timestamp);
+      if (is_bridged[i] == 0)
+        problem.factors.pose_priors.push_back(
+            prior_of(pose, T_camera_world, drifts ? of_drifting_keyframes : of_tracked_frames));
       problem.poses.push_back({T_camera_world, false});
       timestamps.push_back(trajectory[i].timestamp);
     }

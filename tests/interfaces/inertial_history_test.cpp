@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -150,6 +151,24 @@ TEST_F(InertialHistoryTest, AddsAChainWithOnePriorAndVelocitiesThatFollowFromThe
   for (const BundleFactors::Motion& motion : problem.factors.motions)
     EXPECT_LT((motion.velocity - Eigen::Vector3d(0.4, 0.0, 0.0)).norm(), 1e-6);
   EXPECT_TRUE(problem.factors.scale_fixed);
+}
+
+/// Tracking that knows the biases badly must not hold them more firmly than it can.
+TEST_F(InertialHistoryTest, BiasPriorsAreAsWideAsTheEstimatesAtLeast) {
+  add(0.0, 3.0);
+  for (const double deviation : {0.0001, 0.02}) {
+    MapInertia known = estimates();
+    known.gyroscope_deviation = deviation;
+    known.accelerometer_deviation = 10.0 * deviation;
+    history.set_estimates(known, 0);
+    BundleProblem problem;
+    problem.poses.assign(2, {Eigen::Isometry3d::Identity(), false});
+    add_inertial_factors(problem, links({0.5, 2.0}), history);
+    ASSERT_EQ(problem.factors.motion_priors.size(), 1U);
+    const auto& information = problem.factors.motion_priors.front().information;
+    EXPECT_NEAR(1.0 / std::sqrt(information(3, 3)), std::max(deviation, 0.003), 1e-9);
+    EXPECT_NEAR(1.0 / std::sqrt(information(8, 8)), std::max(10.0 * deviation, 0.03), 1e-9);
+  }
 }
 
 }  // namespace

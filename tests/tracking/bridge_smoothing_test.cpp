@@ -50,7 +50,7 @@ class BridgeTest : public testing::Test {
     if (is_bridged) T_world_camera.translation().y() += 0.15 * (i - first_bridged) / (last_bridged - first_bridged);
     frame.T_camera_world = T_world_camera.inverse();
     history.add(frame, reference, map);
-    if (is_bridged) bridged.push_back(frame.timestamp);
+    if (is_bridged) drifting.frames.push_back(frame.timestamp);
   }
   static Frame keyframe() {
     Frame frame;
@@ -67,7 +67,7 @@ class BridgeTest : public testing::Test {
   Map map;
   KeyFrameId reference = map.add_keyframe(keyframe());
   FrameHistory history;
-  std::vector<double> bridged;
+  DriftingPoses drifting;
   InertialHistory inertia{*find_imu("bmi055")};
   std::unique_ptr<Optimizer> optimizer = [] {
     Registry registry;
@@ -78,21 +78,34 @@ class BridgeTest : public testing::Test {
 
 TEST_F(BridgeTest, FramesOfABridgeFollowTheFramesOnBothSides) {
   EXPECT_NEAR(largest_error(), 0.15, 1e-6);
-  EXPECT_EQ(smooth_bridges(history, map, bridged, inertia, *optimizer), 31U);
+  EXPECT_EQ(smooth_bridges(history, map, drifting, inertia, *optimizer), 31U);
   EXPECT_LT(largest_error(), 0.005);
+}
+
+/// As where no adjustment of the map follows the bridge.
+TEST_F(BridgeTest, IsNotHeldByItsOwnKeyframes) {
+  const double middle = drifting.frames[15];
+  std::erase(drifting.frames, middle);
+  drifting.keyframes.push_back(middle);
+  EXPECT_EQ(smooth_bridges(history, map, drifting, inertia, *optimizer), 30U);
+  for (const TimedPose& pose : history.trajectory(map)) {
+    if (pose.timestamp == middle) continue;
+    EXPECT_LT((pose.T_world_camera.translation() - pose_at(pose.timestamp).translation()).norm(), 0.006)
+        << pose.timestamp;
+  }
 }
 
 TEST_F(BridgeTest, StaysWithoutMeasurements) {
   const InertialHistory nothing(*find_imu("bmi055"));
-  EXPECT_EQ(smooth_bridges(history, map, bridged, nothing, *optimizer), 0U);
+  EXPECT_EQ(smooth_bridges(history, map, drifting, nothing, *optimizer), 0U);
   EXPECT_NEAR(largest_error(), 0.15, 1e-6);
 }
 
 TEST_F(BridgeTest, StaysWhereNoTrackedFrameFollows) {
   add_frame(frame_count);
-  bridged.push_back(frame_interval * frame_count);
+  drifting.frames.push_back(frame_interval * frame_count);
   const Eigen::Isometry3d before = history.trajectory(map).back().T_world_camera;
-  smooth_bridges(history, map, bridged, inertia, *optimizer);
+  smooth_bridges(history, map, drifting, inertia, *optimizer);
   EXPECT_EQ(history.trajectory(map).back().T_world_camera.matrix(), before.matrix());
 }
 

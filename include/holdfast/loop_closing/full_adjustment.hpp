@@ -56,6 +56,7 @@ class FullAdjustment {
 
  private:
   void find_links();
+  BundleSummary solve_with_inertia();
   void drop_stale_links();
   void copy_poses();
   void add_links();
@@ -78,6 +79,7 @@ class FullAdjustment {
   std::vector<KeyFrameId> linkable_;          // keyframes when the links were found
   std::vector<InertialHistory::Link> links_;  // between indices of linkable_
   std::uint32_t linked_submap_ = 0;
+  std::vector<std::uint32_t> cluster_;                // by pose, of keyframes that share ample points
   std::vector<std::uint8_t> is_linked_;               // by pose, whether it has an inertial factor
   std::vector<std::uint8_t> is_fixed_without_links_;  // by pose
   std::vector<MapPointId> points_;                    // by point

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
+#include <vector>
 
 #include "holdfast/interfaces/inertial_history.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
@@ -10,12 +10,18 @@
 
 namespace holdfast {
 
-/// Estimates the poses of bridged frames (time stamps [s], increasing) again, from the frames on both sides of each
-/// bridge as the map has them now: a fixed-interval smoother, whose problem has priors for the tracked frames within
-/// half a second of the bridge and inertial factors between all successive frames. What the map corrected behind the
+/// Time stamps of frames that no view of the map placed [s], increasing.
+struct DriftingPoses {
+  std::vector<double> frames;     ///< no keyframes; they get new poses
+  std::vector<double> keyframes;  ///< which no adjustment of the map has placed since
+};
+
+/// Estimates the poses of bridged frames again, from the frames on both sides of each bridge as the map has them now: a
+/// fixed-interval smoother, whose problem has priors for the tracked frames within half a second of the bridge, wide
+/// ones for drifting keyframes, and inertial factors between all successive frames. What the map corrected behind the
 /// bridge is thereby spread over its frames by the uncertainty of the measurements. A bridge at the end of the history
 /// stays as it is. Returns the number of frames with a new pose.
-std::size_t smooth_bridges(FrameHistory& history, const Map& map, std::span<const double> bridged,
+std::size_t smooth_bridges(FrameHistory& history, const Map& map, const DriftingPoses& drifting,
                            const InertialHistory& inertia, Optimizer& optimizer);
 
 }  // namespace holdfast

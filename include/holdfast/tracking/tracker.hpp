@@ -65,9 +65,9 @@ class Tracker {
   void finish(const MapAccess&, StageTimes& times) { recovery_.finish(times); }
 
   /// Estimates the poses of these frames again by the map as it is now, at the end of a run (smooth_bridges()).
-  std::size_t smooth_bridges(const MapAccess& map, std::span<const double> bridged, const InertialHistory& inertia,
+  std::size_t smooth_bridges(const MapAccess& map, const DriftingPoses& drifting, const InertialHistory& inertia,
                              Optimizer& optimizer) {
-    return holdfast::smooth_bridges(context_.history, map.map(), bridged, inertia, optimizer);
+    return holdfast::smooth_bridges(context_.history, map.map(), drifting, inertia, optimizer);
   }
 
   /// The last tracked frame, with features, matches and pose.
