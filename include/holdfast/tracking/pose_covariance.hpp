@@ -19,8 +19,8 @@ class PoseCovariance {
   /// Side of a cell of image within which errors are taken as dependent [rad].
   static constexpr double cell_angle = 0.056;
   /// A frame and its reference keyframe see the same points, so that a share of their errors is common and cancels: the
-  /// sum of both covariances is too large. Measured as the normalised estimation error squared (NEES) of the frames of
-  /// twenty simulated recordings, with other ones held out: benchmarks/tools/measure_health.py.
+  /// sum of both covariances is too large. Chosen by the normalised estimation error squared (NEES) of the frames of
+  /// forty simulated recordings: benchmarks/tools/measure_health.py.
   static constexpr double independent_share = 0.85;
 
   /// Covariance of the error of a pose relative to its reference keyframe: that of the frame, whose errors are
