@@ -2,38 +2,10 @@
 #include "holdfast/tracking/health_judge.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
-#include <cmath>
 
 namespace holdfast {
 
 namespace {
-
-/// Sum of the squared weighted residuals of the inliers by their degrees of freedom. Disparities have the noise and the
-/// robust cost of adjust_pose().
-double variance_factor(const PoseProblem& problem) {
-  constexpr double least = 0.01;  // noise of 0.1 px: smaller residuals are chance or synthetic
-  const auto camera = problem.camera->pinhole();
-  double sum = 0.0;
-  int residuals = 0;
-  for (std::size_t i = 0; i < problem.size(); ++i) {
-    if (problem.inlier[i] == 0 || !(problem.weight[i] > 0.0F)) continue;
-    const Eigen::Vector3d point = problem.T_camera_world * problem.points[i];
-    const double x = camera.fx * point.x() / point.z() + camera.cx - problem.x[i];
-    const double y = camera.fy * point.y() / point.z() + camera.cy - problem.y[i];
-    double squares = problem.inverse_sigma2[i] * (x * x + y * y);
-    residuals += 2;
-    if (!std::isnan(problem.right_x[i])) {
-      const double measured = static_cast<double>(problem.x[i]) - problem.right_x[i];
-      const double deviations =
-          std::abs(camera.fx * camera.baseline / point.z() - measured) / geometry::disparity_sigma;
-      squares += deviations * std::min(deviations, geometry::disparity_threshold);
-      ++residuals;
-    }
-    sum += problem.weight[i] * squares;
-  }
-  return std::max(least, sum / std::max(1, residuals - 6));
-}
 
 bool hides_much(const CoarseView& view) {
   const auto cells = static_cast<std::size_t>(view.grid.size());
@@ -46,11 +18,6 @@ bool hides_much(const CoarseView& view) {
 }
 
 }  // namespace
-
-Eigen::Matrix<double, 6, 6> calibrated_covariance(const PoseProblem& problem,
-                                                  const Eigen::Matrix<double, 6, 6>& covariance) {
-  return correlation_factor * variance_factor(problem) * covariance;
-}
 
 HealthReasons HealthJudge::find_reasons(const FrameResult& result, TrackerState state) const {
   HealthReasons reasons;

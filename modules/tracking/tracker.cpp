@@ -5,6 +5,7 @@
 
 #include "holdfast/core/after_loss.hpp"
 #include "holdfast/geometry/se3.hpp"
+#include "holdfast/tracking/age_disagreement.hpp"
 
 namespace holdfast {
 
@@ -26,6 +27,7 @@ bool Tracker::judge_start(const MapAccess&) {
 void Tracker::begin(const SensorFrame& sensor_frame, FrameResult& result) {
   result.index = sensor_frame.index;
   result.timestamp = sensor_frame.timestamp;
+  covariance_.begin_frame();
   frame_tracker_.begin(sensor_frame, state_, result);
 }
 
@@ -167,12 +169,17 @@ bool Tracker::fuse_with_inertia(FrameResult& result) {
   return true;
 }
 
-void Tracker::calibrate_covariance(FrameResult& result) const {
+void Tracker::calibrate_covariance(FrameResult& result) {
   if (result.status != TrackingStatus::tracked || !result.covariance) return;
-  result.covariance = calibrated_covariance(context_.estimator.problem(), *result.covariance);
   // Odometry places its points by the pose of the previous frame.
-  if (result.fallback != TrackingFallback::odometry || !health_.last_covariance() || !context_.history.has_previous())
-    return;
+  const bool is_relative = result.fallback == TrackingFallback::odometry;
+  const KeyFrame* reference = is_relative ? nullptr : context_.map.find_keyframe(context_.reference_keyframe);
+  result.covariance = covariance_.calibrated_covariance(
+      context_.estimator.problem(), *result.covariance, reference ? context_.reference_keyframe : KeyFrameId(),
+      reference ? context_.current.T_camera_world * reference->frame.T_world_camera() : Eigen::Isometry3d::Identity());
+  if (!is_relative && context_.features_have_depth && context_.moving_world.weights_features())
+    *result.covariance += age_disagreement(context_.current, context_.map);
+  if (!is_relative || !health_.last_covariance() || !context_.history.has_previous()) return;
   const auto to_current = geometry::adjoint_se3(context_.measured_step());
   *result.covariance += to_current * *health_.last_covariance() * to_current.transpose();
 }
@@ -214,6 +221,7 @@ void Tracker::keyframe_added(const MapAccess& map, KeyFrameId keyframe) {
   health_.refined(context_.current.T_world_camera());
   keyframes_.keyframe_added(context_.current.timestamp);
   recovery_.keyframe_added(keyframe);
+  covariance_.keyframe_added(keyframe);
   context_.history.became_keyframe(keyframe, context_.current.timestamp);
 }
 
@@ -224,6 +232,7 @@ void Tracker::forget_map(const MapAccess&) {
   start_->forget();
   recovery_.forget_map();
   health_.forget_map();
+  covariance_.forget_map();
   state_ = TrackerState::waiting;
 }
 

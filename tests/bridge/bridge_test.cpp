@@ -427,6 +427,41 @@ TEST_F(BridgeTest, NothingHangsWhereAnObserverWaits) {
   EXPECT_EQ(recorder_.frames.size(), 1U) << "the frame that waited is answered";
   add(1);
 }
+
+/// Calls `act` in another thread when the bridge tells the address of an observer, before others can see the session.
+class ActsAsASessionBegins final : public Listener {
+ public:
+  void on_frame(const FrameOutput&) override { ++frames; }
+  void on_map(const MapOutput&) override {}
+  void on_grid(const GridOutput&) override {}
+  void on_message(Level, const std::string& text) override {
+    if (text.find("ws://") == std::string::npos || done.valid()) return;
+    done = std::async(std::launch::async, act);
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));  // so that it has found no session to interrupt
+  }
+  std::optional<Eigen::Isometry3d> odometry(Stamp) override { return std::nullopt; }
+
+  std::function<void()> act;
+  std::future<void> done;
+  std::atomic<int> frames = 0;
+};
+
+// A request that comes while a session begins whose observer will wait: the session that it could not see must not
+// wait.
+TEST_F(BridgeTest, ARequestIsServedByASessionThatBeginsMeanwhile) {
+  write("source: bridge\ncamera: auto\nfeatures: orb\noptimizer: schur\nobservers: [{ foxglove: { wait: true } }]\n");
+  ActsAsASessionBegins listener;
+  Bridge bridge(parameters(), listener);
+  listener.act = [&] { bridge.reset(); };
+  bridge.set_camera(office_camera());
+  bridge.add_colour(message_of(office()[0].colour, "bgr8", stamp_of(office()[0])));
+  bridge.add_depth(message_of(office()[0].depth, "32FC1", stamp_of(office()[0])));
+  for (int i = 0; i < 3000 && listener.frames == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(listener.frames, 1) << "the session waits for a client that never comes";
+  if (listener.frames == 0) bridge.reset();  // interrupts it
+  ASSERT_TRUE(listener.done.valid());
+  listener.done.get();
+}
 #endif
 
 TEST_F(BridgeTest, TheSourceOfAConfigurationIsReplacedAndItsCameraCounts) {

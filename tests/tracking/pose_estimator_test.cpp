@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <vector>
 
+#include "holdfast/tracking/age_disagreement.hpp"
 #include "holdfast/tracking/frame_builder.hpp"
 #include "holdfast/tracking/image_depth.hpp"
 #include "support/point_world.hpp"
@@ -59,6 +61,7 @@ struct RoomAndPerson {
       map.update_point(point);
       frame.map_points[i] = point;
     }
+    matched = frame;
     FilterChain filters{EvidenceSettings()};
     if (with_filter) filters.add("none", std::make_unique<NoEvidence>());
     MovingWorld moving_world({.camera = world.camera(), .filters = std::move(filters), .has_depth = false}, map);
@@ -77,7 +80,7 @@ struct RoomAndPerson {
   ImageDepth depth;
   FrameBuilder builder;
   Map map;
-  Frame frame;
+  Frame frame, matched;  // as estimated, and before
   int room = 0, inliers = 0, person_matches = 0;
   double error = 0.0;
 };
@@ -100,6 +103,21 @@ TEST(PoseEstimator, NewPointsCountWhereEstablishedOnesDoNotDecide) {
   EXPECT_GE(error(Sensor::mono, false, 3, {}), 0.04) << "without filters nothing is expected to move";
   EXPECT_GE(error(Sensor::rgbd, true, 3, {}), 0.04) << "depth is measured by filters";
   EXPECT_GE(error(Sensor::mono, true, 3, {.room = 9.0, .person = 9.5}), 0.04) << "all points are of a loaded map";
+}
+
+// Of the two places that room and person say, the camera is taken to be at either.
+TEST(AgeDisagreement, IsHalfTheDistanceOfWhatNewAndOldPointsSay) {
+  const auto deviation = [](std::size_t every, const Times& times) {
+    const RoomAndPerson scene(Sensor::rgbd, true, every, times);
+    const geometry::Matrix6d found = age_disagreement(scene.matched, scene.map);
+    EXPECT_NEAR(found(1, 1), 0.0, 1e-6);
+    return std::sqrt(found(0, 0));
+  };
+  EXPECT_NEAR(deviation(2, {}), 0.025, 0.003);
+  EXPECT_EQ(deviation(2, {.person = 1.2}), 0.0) << "all points are old";
+  EXPECT_EQ(deviation(2, {.room = 1.6}), 0.0) << "no point is old";
+  EXPECT_EQ(deviation(2, {.room = 9.0, .person = 9.5}), 0.0) << "all points are of a loaded map";
+  EXPECT_EQ(deviation(1, {}), 0.0) << "nobody is there";
 }
 
 }  // namespace

@@ -6,23 +6,10 @@
 
 #include "holdfast/core/coarse_view.hpp"
 #include "holdfast/core/frame_result.hpp"
-#include "holdfast/interfaces/optimizer.hpp"
 #include "holdfast/tracking/tracker_state.hpp"
 #include "holdfast/tracking/tracking_settings.hpp"
 
 namespace holdfast {
-
-/// Covariance of an adjusted pose relative to the map around it: PoseSummary::covariance (inverse information for unit
-/// variance of the weighted residuals) times the variance factor of the residuals (sum of squares by degrees of
-/// freedom; Foerstner and Wrobel 2016, section 4.2.3) times correlation_factor. `problem` is the solved one. Does not
-/// allocate.
-Eigen::Matrix<double, 6, 6> calibrated_covariance(const PoseProblem& problem,
-                                                  const Eigen::Matrix<double, 6, 6>& covariance);
-
-/// Matches are not independent: neighbouring points, placed by the same keyframes, share errors of depth and pose. The
-/// covariance for independent ones is too small by this factor. It was measured, as the normalised estimation error
-/// squared (NEES) of 3285 frames of twenty simulated recordings: benchmarks/tools/measure_health.py.
-inline constexpr double correlation_factor = 2.75;
 
 /// Derives the health of frames from their results, one after the other. One thread.
 ///

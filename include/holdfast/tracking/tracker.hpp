@@ -19,6 +19,7 @@
 #include "holdfast/tracking/loss_recovery.hpp"
 #include "holdfast/tracking/map_request.hpp"
 #include "holdfast/tracking/map_start.hpp"
+#include "holdfast/tracking/pose_covariance.hpp"
 #include "holdfast/tracking/tracker_state.hpp"
 #include "holdfast/tracking/tracking_context.hpp"
 
@@ -98,7 +99,7 @@ class Tracker {
   void enter_found_state();
   void end_frame(FrameResult& result);
   bool fuse_with_inertia(FrameResult& result);
-  void calibrate_covariance(FrameResult& result) const;
+  void calibrate_covariance(FrameResult& result);
   void follow_inertia(FrameResult& result);
 
   TrackingContext context_;
@@ -107,6 +108,7 @@ class Tracker {
   std::unique_ptr<MapStart> start_;
   LossRecovery recovery_;
   HealthJudge health_;
+  PoseCovariance covariance_;
   TrackerState state_;
 };
 

@@ -128,8 +128,9 @@ class Pipeline:
         self._core.close()
 
     def interrupt(self) -> None:
-        """Makes long adjustments in progress end after their current iteration, and observers that wait for somebody
-        go on. From any thread."""
+        """Makes adjustments in progress end after their current iteration, and observers that wait for somebody go on,
+        both for the rest of the run: a viewer no longer pauses, and finish() does not adjust again. Frames may still be
+        fed. From any thread, also during feed() and from the pipeline's own modules; a closed pipeline ignores it."""
         self._core.interrupt()
 
     def trajectory(self) -> Trajectory:
