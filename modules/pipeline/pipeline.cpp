@@ -280,12 +280,13 @@ KeyFrameId Pipeline::State::insert_keyframe(const LockedMap& locked, const MapRe
 }
 
 void Pipeline::State::smooth_bridges() {
-  if (!inertia || is_interrupted) return;
+  if (!inertia) return;
   const LoopRecord record = flow.loop_record();
   if (!record.adjustments.empty() && record.adjustments.back().applied) drifting.keyframes.clear();
   const LockedMap locked(map, LockPriority::background);
   const std::optional<MapInertia> adjusted = inertia->estimates();
-  if (adjusted && locked->inertia()) locked->set_inertia(adjusted);
+  if (adjusted && locked->inertia()) locked->set_inertia(adjusted);  // belongs to the poses, interrupted or not
+  if (is_interrupted) return;
   tracker.smooth_bridges(locked, drifting, *inertia, *parts.optimizer);
 }
 

@@ -36,7 +36,7 @@ MeshBorder::MeshBorder(const TriangleMesh& mesh) : mesh_(mesh) {
     edge_.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
       const auto [a, b] = ends(i, k);
-      if (!(edge_[i][k] = triangles_at[{a, b}] == 1)) continue;
+      if (!(edge_[i][k] = a != b && triangles_at[{a, b}] == 1)) continue;  // corners in one place make no edge
       is_on_border[a] = is_on_border[b] = true;
     }
   }

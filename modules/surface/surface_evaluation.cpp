@@ -169,6 +169,10 @@ SurfaceEvaluation evaluate_surface(const TriangleMesh& truth, const TriangleMesh
   require_area(seen, "seen part of the truth", options.spacing);
   require_area(estimate, "estimate", options.spacing);
   const Distances to_truth = distances(estimate, truth, options, is_free);
+  if (to_truth.points == 0)
+    throw Error(
+        "the run of the truth observed nothing of the estimate; expected both in one world, and the run that made "
+        "the truth");
   const Distances to_estimate = distances(seen, estimate, options);
   SurfaceEvaluation result;
   result.options = options;

@@ -22,7 +22,7 @@ class WindowCosts {
   using Lanes = std::int16_t __attribute__((vector_size(16)));
 
   /// `left`, `right`: 8UC1, of the same mean brightness. `half_disparity`: 16SC1 of half the size
-  /// [1/8 px of the full resolution]; less than 1 px: unknown. They must live until the last row.
+  /// [1/8 px of the full resolution]; less than 1 px: unknown. They must not change until the last row.
   void begin(const cv::Mat& left, const cv::Mat& right, const cv::Mat& half_disparity);
   /// The costs of the next row, by column; valid until the next call. At most as many calls as there are rows.
   const Lanes* next_row();

@@ -118,6 +118,13 @@ TEST(SurfaceEvaluation, FindsTheBordersOfTrianglesWithoutCommonVertices) {
   EXPECT_EQ(evaluate_surface(soup, soup, above, {}, nothing).unobserved, 0.0);
 }
 
+TEST(SurfaceEvaluation, RefusesAnEstimateOfWhichNothingWasObserved) {
+  TriangleMesh elsewhere = floor_at(0.0, 2);
+  for (MeshVertex& vertex : elsewhere.vertices) vertex.position.x() += 5.0F;
+  const auto nothing = [](const Eigen::Vector3d&) { return false; };
+  EXPECT_THROW(evaluate_surface(floor_at(0.0, 10), floor_at(0.0, 10), elsewhere, {}, nothing), Error);
+}
+
 TEST(SurfaceEvaluation, MeasuresTheThicknessOfADoubledWall) {
   // A quarter of the floor is there twice, 6 cm apart. What faces the other side does not count, nor does the floor
   // where the truth itself has two surfaces.
