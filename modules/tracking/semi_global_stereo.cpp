@@ -12,9 +12,9 @@ namespace holdfast {
 
 namespace {
 
-constexpr int sixteenths = 16;  // of a pixel, the unit of OpenCV's disparities
-constexpr int eighths = 8;      // of a pixel of the full resolution, the same at half of it
-constexpr int step = 16;        // the number of disparities that OpenCV searches is a multiple of it
+constexpr int sixteenths = 16;                 // of a pixel, the unit of OpenCV's disparities
+constexpr int eighths = WindowCosts::eighths;  // of a pixel of the full resolution: the same unit at half of it
+constexpr int step = 16;                       // the number of disparities that OpenCV searches is a multiple of it
 
 /// The least number of disparities that OpenCV can search up to this one [px].
 int in_steps(double disparity) { return std::max(1, static_cast<int>(std::ceil(disparity / step))) * step; }

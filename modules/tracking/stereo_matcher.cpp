@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 
+#include "eight_words.hpp"
 #include "holdfast/core/descriptor_distance.hpp"
 #include "holdfast/core/median.hpp"
 
@@ -105,14 +106,6 @@ Strip strip_of(const cv::Mat& right, int column, float top, int width, int side,
   return {buffer.data(), width};
 }
 
-using Shifts = std::int16_t __attribute__((vector_size(2 * lanes)));  // a value of each of the columns
-
-Shifts shifts_at(const std::int16_t* values) {
-  Shifts result;
-  std::memcpy(&result, values, sizeof result);
-  return result;
-}
-
 /// The strip's rows as words, and the sums of its columns.
 struct Columns {
   static constexpr int width = (max_side - 1 + max_shifts + lanes - 1) / lanes * lanes + lanes;
@@ -120,17 +113,13 @@ struct Columns {
   std::array<std::int16_t, width> sums;
 
   Columns(const Strip& strip, int used, int side) {
-    using Bytes = std::uint8_t __attribute__((vector_size(lanes)));
     std::array<std::uint8_t, width> bytes{};
     const int end = (used + lanes - 1) / lanes * lanes + lanes;  // what comes after the last shift is read as well
     std::fill(sums.begin(), sums.begin() + end, std::int16_t{0});
     for (int row = 0; row < side; ++row) {
       std::copy_n(strip.row(row), used, bytes.begin());
       for (int k = 0; k < end; k += lanes) {
-        Bytes packed;
-        std::memcpy(&packed, bytes.data() + k, sizeof packed);
-        const Shifts values = __builtin_convertvector(packed, Shifts);
-        const Shifts sum = shifts_at(sums.data() + k) + values;
+        const EightWords values = pixels_at(bytes.data() + k), sum = words_at(sums.data() + k) + values;
         std::memcpy(rows[static_cast<std::size_t>(row)].data() + k, &values, sizeof values);
         std::memcpy(sums.data() + k, &sum, sizeof sum);  // 31 times 255 at most
       }
@@ -156,15 +145,12 @@ void compare_patches(const cv::Mat& left, int x, int y, const Strip& strip, int 
 
   costs.fill(0);
   for (int block = 0; block < shifts; block += lanes) {
-    const Shifts mean = shifts_at(means.data() + block);
+    const EightWords mean = words_at(means.data() + block);
     for (int row = 0; row < side; ++row) {
       const std::uint8_t* a = left_row(row);
       const std::int16_t* b = right.rows[static_cast<std::size_t>(row)].data() + block;
-      Shifts sums{};  // the differences of one row, 31 times 510 at most, fit into 16 bits
-      for (int k = 0; k < side; ++k) {
-        const Shifts difference = static_cast<std::int16_t>(a[k]) - mean - shifts_at(b + k);
-        sums += difference < 0 ? -difference : difference;
-      }
+      EightWords sums{};  // the differences of one row, 31 times 510 at most, fit into 16 bits
+      for (int k = 0; k < side; ++k) sums += absolute(static_cast<std::int16_t>(a[k]) - mean - words_at(b + k));
       for (int lane = 0; lane < lanes; ++lane) costs[static_cast<std::size_t>(block + lane)] += sums[lane];
     }
   }

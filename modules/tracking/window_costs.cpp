@@ -2,8 +2,6 @@
 #include "window_costs.hpp"
 
 #include <algorithm>
-#include <cstdlib>
-#include <cstring>
 
 namespace holdfast {
 
@@ -11,18 +9,7 @@ namespace {
 
 constexpr std::int16_t max_difference = 40;  // grey levels
 
-int mirrored(int place, int size) {
-  if (size == 1) return 0;
-  const int period = 2 * (size - 1), within = std::abs(place) % period;
-  return within < size ? within : period - within;
-}
-
-WindowCosts::Lanes eight_pixels(const std::uint8_t* pixels) {
-  using Bytes = std::uint8_t __attribute__((vector_size(8)));
-  Bytes bytes;
-  std::memcpy(&bytes, pixels, sizeof bytes);
-  return __builtin_convertvector(bytes, WindowCosts::Lanes);
-}
+int mirrored(int place, int size) { return cv::borderInterpolate(place, size, cv::BORDER_REFLECT_101); }
 
 }  // namespace
 
@@ -58,11 +45,10 @@ void WindowCosts::compare(int row) {
       continue;
     }
     const std::uint8_t* from = right_row_.data() + whole - reach;
-    const Lanes first = eight_pixels(from), second = eight_pixels(from + 1);
+    const Lanes first = pixels_at(from), second = pixels_at(from + 1);
     const Lanes value =
         (first * static_cast<std::int16_t>(eighths) + (second - first) * part + std::int16_t{eighths / 2}) >> 3;
-    const Lanes signed_difference = static_cast<std::int16_t>(left[column]) - value;
-    const Lanes difference = signed_difference < 0 ? -signed_difference : signed_difference;
+    const Lanes difference = absolute(static_cast<std::int16_t>(left[column]) - value);
     to[column] = difference < max_difference ? difference : Lanes{} + max_difference;
   }
 }

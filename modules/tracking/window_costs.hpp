@@ -6,6 +6,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "eight_words.hpp"
+
 namespace holdfast {
 
 /// Sums of absolute differences of a pair, in a square window around each pixel of the left image, at the disparity
@@ -19,7 +21,7 @@ class WindowCosts {
   static constexpr int window = 9;   ///< px
   static constexpr int eighths = 8;  ///< of a pixel: the unit of disparities
   /// Costs of one pixel: lane k belongs to the disparity found + reach - k; lanes without a candidate are of no use.
-  using Lanes = std::int16_t __attribute__((vector_size(16)));
+  using Lanes = EightWords;
 
   /// `left`, `right`: 8UC1, of the same mean brightness. `half_disparity`: 16SC1 of half the size
   /// [1/8 px of the full resolution]; less than 1 px: unknown. They must not change until the last row.
