@@ -352,6 +352,13 @@ void Pipeline::finish() {
   }
   s.flow.adjust_after_last_loop();
   s.smooth_bridges();
+  if (!s.is_interrupted) {
+    const LockedMap locked(s.map, LockPriority::background);
+    s.flow.in_background([&](StageTimes& times) {
+      const StageTimer timer(times, "smooth trajectory");
+      s.tracker.smooth_trajectory(locked);
+    });
+  }
   s.flow.finish_surface();
   if (s.keeps_classes()) s.map.unshared().classify_points();
   for (const auto& observer : s.parts.observers) observer->on_finish(s.map.unshared());

@@ -14,6 +14,7 @@ void LateTracker::keep(const Frame& frame) {
   if (settings_.late_frames == 0) return;
   if (static_cast<int>(frames_.size()) >= settings_.late_frames) frames_.pop_front();
   frames_.push_back(frame);
+  frames_.back().static_probability.assign(frame.size(), 1.0F);
 }
 
 void LateTracker::finish(StageTimes& times) {

@@ -101,7 +101,7 @@ bool LossRecovery::was_just_found() const {
 }
 
 bool LossRecovery::wants_mask(TrackerState state) const {
-  return !context_.localises_only && context_.features_have_depth && !context_.history.empty() &&
+  return !context_.localises_only && !context_.history.empty() &&
          (state == TrackerState::lost || state == TrackerState::unconfirmed);
 }
 

@@ -293,6 +293,9 @@ void describe_losses(ParameterTable<S>& table) {
            "frames without a pose whose features are kept, at most, to be located in the map at the end of the run "
            "(0.2 MB each); 0 = none")
       .range(0, 100000);
+  table.add("smooth_trajectory", &S::smooth_trajectory,
+            "whether errors that change from frame to frame are removed from the trajectory at the end of the run, as "
+            "far as the accelerations of the camera allow; poses during the run and the map do not change");
   table
       .add("start_share", &S::start_share,
            "when the first mask shows that less than this share of the first keyframe's features is static, the map "

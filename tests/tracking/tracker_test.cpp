@@ -469,6 +469,13 @@ TEST(Tracker, OneCameraIsNotCarriedByAMapThatExplainsNextToNothing) {
     tracker.locate(access, frame, result);
     EXPECT_GE(result.inliers, 2 * settings.minimum_inliers);
     EXPECT_EQ(result.status, every < 10 ? TrackingStatus::tracked : TrackingStatus::lost);
+    if (every > 10) continue;
+    frame = bench.world.frame(1, 1.0 / 30.0, at(0.02, 0.01), false);
+    frame.depth.release();
+    bench.moving_world.next_frame(frame.timestamp);
+    tracker.begin(frame, result);
+    EXPECT_TRUE(tracker.locate(access, frame, result).wants_mask) << "to find the camera by what is static";
+    EXPECT_EQ(result.status, TrackingStatus::lost);
   }
 }
 

@@ -22,6 +22,7 @@
 #include "holdfast/tracking/pose_covariance.hpp"
 #include "holdfast/tracking/tracker_state.hpp"
 #include "holdfast/tracking/tracking_context.hpp"
+#include "holdfast/tracking/trajectory_smoothing.hpp"
 
 namespace holdfast {
 
@@ -69,6 +70,11 @@ class Tracker {
   std::size_t smooth_bridges(const MapAccess& map, const DriftingPoses& drifting, const InertialHistory& inertia,
                              Optimizer& optimizer) {
     return holdfast::smooth_bridges(context_.history, map.map(), drifting, inertia, optimizer);
+  }
+
+  /// Smooths the trajectory at the end of a run, if the settings say so (trajectory_smoothing.hpp).
+  void smooth_trajectory(const MapAccess& map) {
+    if (context_.settings.smooth_trajectory) holdfast::smooth_trajectory(context_.history, map.map());
   }
 
   /// The last tracked frame, with features, matches and pose.

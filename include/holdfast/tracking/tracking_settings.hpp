@@ -104,15 +104,16 @@ struct TrackingSettings {
   double found_time = 0.5;           ///< time after a recovery in which MapRequest::follows_loss holds [s]
 
   // Relocalisation.
-  double restart_time = 0.0;     ///< duration of a loss after which a new submap begins [s]; 0 = never
-  int backward_frames = 60;      ///< maximum number of frames kept for backward tracking; 0 = none
-  int backward_steps = 2;        ///< frames tracked backwards per new frame
-  int backward_mask_frames = 8;  ///< frames to wait for the mask of the first keyframe after a recovery
-  int backward_patience = 3;     ///< consecutive failures after which backward tracking ends
-  int late_frames = 0;           ///< maximum number of frames kept for the end of the run, see LateTracker; 0 = none
-  double start_share = 0.6;      ///< minimum static share of the first keyframe's features; 0 = any
-  double young_map_time = 1.0;   ///< age up to which a lost map is restarted [s]; 0 = never
-  double coasting_time = 1.0;    ///< duration of the extrapolation after a loss [s]
+  double restart_time = 0.0;      ///< duration of a loss after which a new submap begins [s]; 0 = never
+  int backward_frames = 60;       ///< maximum number of frames kept for backward tracking; 0 = none
+  int backward_steps = 2;         ///< frames tracked backwards per new frame
+  int backward_mask_frames = 8;   ///< frames to wait for the mask of the first keyframe after a recovery
+  int backward_patience = 3;      ///< consecutive failures after which backward tracking ends
+  int late_frames = 0;            ///< maximum number of frames kept for the end of the run, see LateTracker; 0 = none
+  bool smooth_trajectory = true;  ///< whether the trajectory is smoothed at the end of the run
+  double start_share = 0.6;       ///< minimum static share of the first keyframe's features; 0 = any
+  double young_map_time = 1.0;    ///< age up to which a lost map is restarted [s]; 0 = never
+  double coasting_time = 1.0;     ///< duration of the extrapolation after a loss [s]
   std::vector<double> coasting_shares = {1.0, 0.5, 0.0};  ///< fractions of the last velocity that are extrapolated
   double coasting_window = 3.0;                           ///< factor on local_map_window
   int recovery_keyframes = 5;                             ///< keyframes compared with each frame after a loss
