@@ -144,11 +144,11 @@ void Tracker::end_frame(FrameResult& result) {
     if (result.failure != TrackingFailure::no_mask) recovery_.keep_late_frame();
     context_.history.interrupt();
     context_.inertia.lost();
-    result.health = health_.judge(result, state_, context_.current.coarse);
+    result.health = health_.judge(result, state_, context_.moving_world.hides_most(context_.current.coarse));
     return;
   }
   result.T_world_camera = context_.current.T_world_camera();
-  result.health = health_.judge(result, state_, context_.current.coarse);
+  result.health = health_.judge(result, state_, context_.moving_world.hides_most(context_.current.coarse));
   if (context_.reference_keyframe.valid()) result.keyframe = context_.reference_keyframe;
   context_.history.add(context_.current, context_.reference_keyframe, context_.map);
   follow_inertia(result);
