@@ -27,7 +27,7 @@ double HealthJudge::correction() const {
   return reported_ && corrected_ ? (corrected_->translation() - reported_->translation()).norm() : 0.0;
 }
 
-FrameHealth HealthJudge::judge(const FrameResult& result, TrackerState state, bool hides_most) {
+FrameHealth HealthJudge::judge(const FrameResult& result, TrackerState state, const std::function<bool()>& hides_most) {
   FrameHealth health;
   if (!result.T_world_camera) {
     health.state = state == TrackerState::waiting ? HealthState::waiting : HealthState::lost;
@@ -50,7 +50,7 @@ FrameHealth HealthJudge::judge(const FrameResult& result, TrackerState state, bo
   if (health.state != HealthState::good && health.state != HealthState::waiting) {
     if (result.static_features < 4 * minimum_inliers_ && result.features < 8 * minimum_inliers_)
       health.reasons.add(HealthReason::few_features);
-    if (hides_most) health.reasons.add(HealthReason::hidden_view);
+    if (hides_most()) health.reasons.add(HealthReason::hidden_view);
   }
   corrected_.reset();
   covariance_ = result.covariance;

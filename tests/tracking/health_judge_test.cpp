@@ -24,7 +24,7 @@ class HealthJudgeTest : public testing::Test {
     return result;
   }
   FrameHealth judge(const FrameResult& result, TrackerState state = TrackerState::tracking) {
-    return judge_.judge(result, state, hides_most_);
+    return judge_.judge(result, state, [this] { return hides_most_; });
   }
 
   HealthJudge judge_{TrackingSettings()};
