@@ -116,6 +116,16 @@ cv::Mat MovingWorld::moving_pixels(const CoarseView& view, std::span<const std::
   return sampler_.pixels_of(moving);
 }
 
+bool MovingWorld::hides_most(const CoarseView& view) const {
+  const auto cells = static_cast<std::size_t>(view.grid.size());
+  std::size_t hidden = 0;
+  for (std::size_t i = 0; i < cells; ++i) {
+    const bool can_move = i < view.mask.labels.size() && is_movable_[view.mask.labels[i]];
+    hidden += can_move || (i < view.static_log_odds.size() && view.static_log_odds[i] < 0.0F) ? 1 : 0;
+  }
+  return 2 * hidden > cells;
+}
+
 void MovingWorld::next_frame(double timestamp) {
   ++next_frame_number_;
   timestamp_ = timestamp;
@@ -147,7 +157,25 @@ void MovingWorld::count_mask(const CellMask& mask) {
     ++known;
     movable += is_movable_[label] ? 1 : 0;
   }
-  if (2 * movable > known) ++mask_counts_.mostly_movable;
+  if (2 * movable <= known) return;
+  ++mask_counts_.mostly_movable;
+  if (covers_upper_edge(mask)) ++mask_counts_.upper_edge_movable;
+}
+
+/// The upper edge is the first cell of each column that shows the image and has a label.
+bool MovingWorld::covers_upper_edge(const CellMask& mask) const {
+  const int columns = sampler_.grid().columns;
+  std::size_t known = 0, movable = 0;
+  for (int column = 0; column < columns; ++column) {
+    for (int cell = column; cell < sampler_.grid().size(); cell += columns) {
+      const std::uint8_t label = mask.labels[static_cast<std::size_t>(cell)];
+      if (sampler_.raw_pixel(cell) < 0 || label == CellMask::unknown) continue;
+      ++known;
+      movable += is_movable_[label] ? 1 : 0;
+      break;
+    }
+  }
+  return 10 * movable > 9 * known;
 }
 
 void MovingWorld::evaluate_keyframe(const MapAccess& map, const ArrivedMask& arrived, StageTimes& times) {

@@ -161,7 +161,10 @@ Json perturbation_json(const Configuration& configuration) {
 }
 
 Json masks_json(const MaskCounts& masks, const std::vector<double>& ages) {
-  Json json = {{"count", masks.found}, {"segmented", masks.segmented}, {"mostly_movable", masks.mostly_movable}};
+  Json json = {{"count", masks.found},
+               {"segmented", masks.segmented},
+               {"mostly_movable", masks.mostly_movable},
+               {"upper_edge_movable", masks.upper_edge_movable}};
   if (ages.empty()) return json;
   json["median_age_s"] = median(ages);
   json["p95_age_s"] = percentile(ages, 95.0);

@@ -23,13 +23,15 @@ void find_mask_warnings(const RunRecord& record, Warnings& warnings) {
                            segmenter + "had no mask for any of the " + counted(masks.segmented, "frame") +
                                " that it was given, so that nothing was masked; check its files or its results with "
                                "`holdfast segment`"});
-  if (masks.found >= least_frames && 2 * masks.mostly_movable > masks.found)
+  if (masks.found >= least_frames && 2 * masks.mostly_movable > masks.found &&
+      2 * masks.upper_edge_movable > masks.mostly_movable)
     add_warning(warnings,
                 {{},
                  std::to_string(masks.mostly_movable) + " of " + counted(masks.found, "mask") + " of " + segmenter +
-                     "cover more than half of the image with classes that can move: are they inverted, or is a "
-                     "class of the background among the movable ones? Look at them with `observers: [overlay]`; "
-                     "correct the names of its labels or classes, or `classes` of the filter"});
+                     "cover more than half of the image with classes that can move, its upper edge included in " +
+                     std::to_string(masks.upper_edge_movable) +
+                     ": are they inverted, or is a class of the background among the movable ones? Look at them with "
+                     "`observers: [overlay]`; correct the names of its labels or classes, or `classes` of the filter"});
 }
 
 /// The lengths on which the scale of a map depends.

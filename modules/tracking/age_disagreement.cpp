@@ -5,6 +5,7 @@
 
 #include "holdfast/geometry/pose_problem.hpp"
 #include "holdfast/interfaces/frame_observations.hpp"
+#include "holdfast/matching/frame_features.hpp"
 #include "holdfast/tracking/pose_covariance.hpp"
 
 namespace holdfast {
@@ -51,7 +52,8 @@ std::optional<bool> is_new(const MapPoint& point, const Map& map, double now) {
 void sort_by_age(const Frame& frame, const Map& map, Group& older, Group& newer) {
   older.begin(frame), newer.begin(frame);
   for (std::size_t i = 0; i < frame.size(); ++i) {
-    const MapPoint* point = frame.map_points[i].valid() ? map.find_point(frame.map_points[i]) : nullptr;
+    const bool counts = frame.map_points[i].valid() && is_static(frame, i);
+    const MapPoint* point = counts ? map.find_point(frame.map_points[i]) : nullptr;
     if (point == nullptr) continue;
     if (const std::optional<bool> found = is_new(*point, map, frame.timestamp))
       add_observation(*found ? newer.problem : older.problem, frame, i, point->position);

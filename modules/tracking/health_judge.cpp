@@ -5,20 +5,6 @@
 
 namespace holdfast {
 
-namespace {
-
-bool hides_much(const CoarseView& view) {
-  const auto cells = static_cast<std::size_t>(view.grid.size());
-  std::size_t hidden = 0;
-  for (std::size_t i = 0; i < cells; ++i) {
-    const bool is_movable = i < view.mask.labels.size() && CellMask::is_object(view.mask.labels[i]);
-    hidden += is_movable || (i < view.static_log_odds.size() && view.static_log_odds[i] < 0.0F) ? 1 : 0;
-  }
-  return cells > 0 && 2 * hidden > cells;
-}
-
-}  // namespace
-
 HealthReasons HealthJudge::find_reasons(const FrameResult& result, TrackerState state) const {
   HealthReasons reasons;
   if (result.status == TrackingStatus::initialised) {
@@ -41,7 +27,7 @@ double HealthJudge::correction() const {
   return reported_ && corrected_ ? (corrected_->translation() - reported_->translation()).norm() : 0.0;
 }
 
-FrameHealth HealthJudge::judge(const FrameResult& result, TrackerState state, const CoarseView& view) {
+FrameHealth HealthJudge::judge(const FrameResult& result, TrackerState state, const std::function<bool()>& hides_most) {
   FrameHealth health;
   if (!result.T_world_camera) {
     health.state = state == TrackerState::waiting ? HealthState::waiting : HealthState::lost;
@@ -64,7 +50,7 @@ FrameHealth HealthJudge::judge(const FrameResult& result, TrackerState state, co
   if (health.state != HealthState::good && health.state != HealthState::waiting) {
     if (result.static_features < 4 * minimum_inliers_ && result.features < 8 * minimum_inliers_)
       health.reasons.add(HealthReason::few_features);
-    if (hides_much(view)) health.reasons.add(HealthReason::hidden_view);
+    if (hides_most()) health.reasons.add(HealthReason::hidden_view);
   }
   corrected_.reset();
   covariance_ = result.covariance;

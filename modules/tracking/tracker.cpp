@@ -135,6 +135,7 @@ void Tracker::found_pose(FrameResult& result) {
 
 void Tracker::end_frame(FrameResult& result) {
   const bool is_found = has_pose(state_);
+  const auto hides_most = [this] { return context_.moving_world.hides_most(context_.current.coarse); };
   context_.moving_world.end_frame(context_.current, is_found);
   if (const std::optional<int> count = start_->kept_frames(state_, result))
     recovery_.keep_frame(*count, result.times);
@@ -144,11 +145,11 @@ void Tracker::end_frame(FrameResult& result) {
     if (result.failure != TrackingFailure::no_mask) recovery_.keep_late_frame();
     context_.history.interrupt();
     context_.inertia.lost();
-    result.health = health_.judge(result, state_, context_.current.coarse);
+    result.health = health_.judge(result, state_, hides_most);
     return;
   }
   result.T_world_camera = context_.current.T_world_camera();
-  result.health = health_.judge(result, state_, context_.current.coarse);
+  result.health = health_.judge(result, state_, hides_most);
   if (context_.reference_keyframe.valid()) result.keyframe = context_.reference_keyframe;
   context_.history.add(context_.current, context_.reference_keyframe, context_.map);
   follow_inertia(result);

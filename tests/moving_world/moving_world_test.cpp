@@ -15,7 +15,7 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using test::BoxWorld;
 
-constexpr std::uint8_t person = 1;
+constexpr std::uint8_t person = 1, table = 2;
 
 /// A wall with furniture, and one person.
 BoxWorld room(double person_x = 0.0) {
@@ -44,15 +44,16 @@ class ExactSegmenter final : public Segmenter {
     for (int row = 0; row < labels.rows; ++row)
       for (int column = 0; column < labels.cols; ++column)
         labels.at<std::uint8_t>(row, column) = world.look(at(0.0), column, row).label;
-    if (inverts) labels = labels == 0;
-    if (inverts) labels /= 255;
+    if (inverts) labels = (labels == 0) / 255 * shown;
+    if (!covers_upper_edge) labels.rowRange(0, 40) = 0;
     return {labels, {}};
   }
 
-  bool finds_nothing = false, inverts = false;
+  bool finds_nothing = false, inverts = false, covers_upper_edge = true;
+  std::uint8_t shown = person;  ///< label of the background of inverted masks
 
  private:
-  std::vector<std::string> classes_{"background", "person"};
+  std::vector<std::string> classes_{"background", "person", "table"};
 };
 
 /// Suspects the features and cells on masks; notes the stages in which it ran.
@@ -191,6 +192,28 @@ TEST_F(MovingWorldTest, MasksAreCountedByWhatTheyShow) {
   segment(2);
   EXPECT_EQ(world.mask_counts().found, 2U);
   EXPECT_EQ(world.mask_counts().mostly_movable, 1U);
+  EXPECT_EQ(world.mask_counts().upper_edge_movable, 1U);
+  segmenter.covers_upper_edge = false;
+  segment(3);
+  EXPECT_EQ(world.mask_counts().mostly_movable, 2U);
+  EXPECT_EQ(world.mask_counts().upper_edge_movable, 1U) << "as of people that fill the view up to their heads";
+}
+
+TEST_F(MovingWorldTest, OnlyClassesThatCanMoveHideTheView) {
+  segmenter.inverts = true;
+  for (const bool can_move : {true, false}) {
+    segmenter.shown = can_move ? person : table;
+    MovingWorld world = world_with(0);
+    track(world, 0);
+    ASSERT_TRUE(world.request_mask(sensor_frame(0), KeyFrameId{0, 0}, times));
+    ASSERT_TRUE(world.take_mask(times));
+    EXPECT_EQ(world.hides_most(track(world, 1).coarse), can_move);
+  }
+  MovingWorld world({.camera = Camera()}, map);
+  Frame frame = track(world, 0);
+  EXPECT_FALSE(world.hides_most(frame.coarse));
+  frame.coarse.static_log_odds.assign(static_cast<std::size_t>(frame.coarse.grid.size()), -1.0F);
+  EXPECT_TRUE(world.hides_most(frame.coarse)) << "everything moves";
 }
 
 TEST_F(MovingWorldTest, FeaturesAreNotExtractedOnObjectsThatMove) {

@@ -341,20 +341,21 @@ TEST_F(ResultsTest, AMapAfterDepthBeyondAnySensorIsWrittenAndReadAgain) {
   map.points().for_each([&](MapPointId, const MapPoint& point) { EXPECT_LT(point.position.norm(), 10.0); });
 }
 
-/// Marks the left columns of an image as a person, or has no mask at all.
+/// Marks the left columns of an image, but for the upper rows, as a person, or has no mask at all.
 class ColumnSegmenter final : public Segmenter {
  public:
-  explicit ColumnSegmenter(double share) : share_(share) {}
+  ColumnSegmenter(double share, int first_row) : share_(share), first_row_(first_row) {}
   const std::vector<std::string>& classes() const override { return classes_; }
   Segmentation segment(const SensorFrame& frame) override {
     if (share_ < 0.0) return {};
     cv::Mat labels = cv::Mat::zeros(frame.colour.size(), CV_8UC1);
-    labels.colRange(0, static_cast<int>(share_ * labels.cols)).setTo(1);
+    labels(cv::Range(first_row_, labels.rows), cv::Range(0, static_cast<int>(share_ * labels.cols))).setTo(1);
     return {labels, {}};
   }
 
  private:
   double share_;
+  int first_row_;
   std::vector<std::string> classes_{"background", "person"};
 };
 
@@ -365,7 +366,7 @@ class PersonFilter final : public DynamicFilter {
   void apply(const FilterContext&, StaticEvidence&) override {}
 };
 
-RunRecord run_with_masks(double share) {
+RunRecord run_with_masks(double share, int first_row = 0) {
   test::PointRun points;
   auto source = std::make_unique<test::PointSource>(points.world);
   Registry registry;
@@ -374,7 +375,7 @@ RunRecord run_with_masks(double share) {
   builder.source(source->describe())
       .features(std::make_unique<test::PointExtractor>(points.world, 0.3))
       .optimizer(CeresSettings{})
-      .segmenter({std::make_unique<ColumnSegmenter>(share), "columns"})
+      .segmenter({std::make_unique<ColumnSegmenter>(share, first_row), "columns"})
       .segmentation({.frames = SegmentedFrames::every_n, .every = 5})
       .filter(std::make_unique<PersonFilter>());
   points.configuration.segmenter.name = "columns";
@@ -396,12 +397,16 @@ TEST(MaskWarnings, MasksThatAreMissingOrCoverMostOfTheImageAreSuspected) {
   EXPECT_EQ(usual.masks.found, usual.masks.segmented);
   EXPECT_TRUE(mask_warnings(usual).empty());
 
-  const RunRecord inverted = run_with_masks(0.9);
+  const RunRecord crowd = run_with_masks(0.95, 60);
+  EXPECT_EQ(crowd.masks.mostly_movable, crowd.masks.found);
+  EXPECT_TRUE(mask_warnings(crowd).empty()) << "people who fill the view leave some of the upper edge";
+
+  const RunRecord inverted = run_with_masks(0.95);
   ASSERT_EQ(mask_warnings(inverted).size(), 1U);
   EXPECT_THAT(mask_warnings(inverted)[0],
               AllOf(HasSubstr("masks of the segmenter 'columns' cover more than half of the image with classes that "
-                              "can move: are they inverted"),
-                    HasSubstr("overlay")));
+                              "can move, its upper edge included in "),
+                    HasSubstr("are they inverted"), HasSubstr("overlay")));
   EXPECT_THAT(run_json(inverted), HasSubstr("cover more than half"));
   EXPECT_THAT(report_html(inverted), HasSubstr("cover more than half"));
 

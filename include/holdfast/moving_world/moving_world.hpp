@@ -125,6 +125,9 @@ class MovingWorld {
   /// none. Any thread.
   cv::Mat moving_pixels(const CoarseView& view, std::span<const std::uint8_t> left_out = {}) const;
 
+  /// True if more than half of the cells show classes that can move, or are more likely moving than static. Any thread.
+  bool hides_most(const CoarseView& view) const;
+
   // Called by the pipeline.
 
   bool expects_masks() const { return queue_.has_value(); }
@@ -155,6 +158,7 @@ class MovingWorld {
  private:
   FilterContext context(const SensorFrame& sensor_frame, const Frame& frame) const;
   void count_mask(const CellMask& mask);
+  bool covers_upper_edge(const CellMask& mask) const;
 
   Map& map_;
   FilterChain filters_;

@@ -15,7 +15,8 @@ namespace holdfast {
 /// chi-square with six degrees of freedom at 95 %. If they differ, either may be right and the pose lies between
 /// them: the covariance of that, in the camera frame, has half their distance as standard deviation. Zero if they
 /// agree, if fewer than a quarter of the matches are new, which cannot move the pose far, or if a group is too small to
-/// tell.
+/// tell. Only features that are probably static count, as for the inliers of a pose: a common factor of the weights of
+/// a group changes neither its pose nor its covariance.
 ///
 /// `frame` has matches that agree with its pose. Thread-safe, with the map not changing; scratch memory is kept per
 /// thread.

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <optional>
 
-#include "holdfast/core/coarse_view.hpp"
 #include "holdfast/core/frame_result.hpp"
 #include "holdfast/tracking/tracker_state.hpp"
 #include "holdfast/tracking/tracking_settings.hpp"
@@ -26,8 +26,9 @@ class HealthJudge {
 
   /// The map as it is now places the last frame that had a pose here.
   void follow_map(const Eigen::Isometry3d& T_world_camera) { corrected_ = T_world_camera; }
-  /// `result` is complete but for its health.
-  FrameHealth judge(const FrameResult& result, TrackerState state, const CoarseView& view);
+  /// `result` is complete but for its health; `hides_most` is MovingWorld::hides_most() of its view, called
+  /// where the health is to be explained.
+  FrameHealth judge(const FrameResult& result, TrackerState state, const std::function<bool()>& hides_most);
   /// The pose of the last frame was refined before it was reported.
   void refined(const Eigen::Isometry3d& T_world_camera) { reported_ = T_world_camera; }
   /// Covariance of the frame before, if it had one.
