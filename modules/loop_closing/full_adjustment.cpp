@@ -253,7 +253,7 @@ void FullAdjustment::solve() {
     summary_.stop_seconds = static_cast<double>(now_in_nanoseconds() - asked) * 1e-9;
 }
 
-/// The first solution, without weak ties, tells which of them are right.
+/// The first solution, without weak ties, tells which of them are right. It stays if there is none with these.
 BundleSummary FullAdjustment::solve_with_inertia() {
   WeakTies ties;
   if (const std::optional<MapInertia> estimates = inertia_->estimates()) ties.take_out(problem_, cluster_, *estimates);
@@ -264,12 +264,16 @@ BundleSummary FullAdjustment::solve_with_inertia() {
     return first;
   }
   ties.put_back_agreeing(problem_);
-  BundleSummary second = optimizer_.optimize_bundle(problem_, stop_);
-  ties.add_rejected(problem_);
-  second.iterations += first.iterations;
-  second.seconds += first.seconds;
-  second.initial_cost = first.initial_cost;
-  return second;
+  BundleSummary summary = optimizer_.optimize_bundle(problem_, stop_);
+  const BundleSummary& solution = summary.usable ? summary : first;  // one that is not usable changes nothing
+  summary.outliers = solution.outliers;
+  summary.final_cost = solution.final_cost;
+  summary.usable = true;
+  summary.iterations += first.iterations;
+  summary.seconds += first.seconds;
+  summary.initial_cost = first.initial_cost;
+  summary.outliers += static_cast<int>(ties.add_rejected(problem_));
+  return summary;
 }
 
 FullAdjustmentSummary FullAdjustment::apply() {
