@@ -148,6 +148,7 @@ void FullAdjustment::prepare() {
     structure_lock.lock();
   }
   summary_ = {};
+  placed_keyframes_.clear();
   problem_ = {};
   points_.clear();
   problem_.robust_iterations = settings_.full_robust_iterations;
@@ -315,6 +316,12 @@ void FullAdjustment::move_map() {
     is_weak.push_back(shared[keyframes_[i].slot] < few_points && is_linked_[i] == 0 ? 1 : 0);
   const MapMotion motion(map_, keyframes_, poses, {}, is_weak);
   summary_.keyframes_carried = motion.move_keyframes(map_);
+  for (std::size_t i = 0; i < keyframes_.size() && inertia_ != nullptr; ++i) {
+    const KeyFrame* keyframe = map_.find_keyframe(keyframes_[i]);
+    if (keyframe == nullptr || problem_.poses[i].fixed) continue;
+    if (keyframe->frame.T_camera_world.matrix() == poses[i].matrix())
+      placed_keyframes_.push_back(keyframe->frame.timestamp);
+  }
   std::vector<std::uint8_t> is_placed(map_.points().slot_count(), 0);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     MapPoint* point = map_.find_point(points_[i]);

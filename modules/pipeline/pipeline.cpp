@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/pipeline/pipeline.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -281,13 +282,14 @@ KeyFrameId Pipeline::State::insert_keyframe(const LockedMap& locked, const MapRe
 
 void Pipeline::State::smooth_bridges() {
   if (!inertia) return;
-  const LoopRecord record = flow.loop_record();
-  if (!record.adjustments.empty() && record.adjustments.back().applied) drifting.keyframes.clear();
+  const std::vector<double> placed = flow.placed_keyframes();
+  std::erase_if(drifting.keyframes,
+                [&](double stamp) { return std::find(placed.begin(), placed.end(), stamp) != placed.end(); });
   const LockedMap locked(map, LockPriority::background);
   const std::optional<MapInertia> adjusted = inertia->estimates();
   if (adjusted && locked->inertia()) locked->set_inertia(adjusted);  // belongs to the poses, interrupted or not
   if (is_interrupted) return;
-  tracker.smooth_bridges(locked, drifting, *inertia, *parts.optimizer);
+  tracker.smooth_bridges(locked, drifting, *inertia, *parts.optimizer, is_interrupted);
 }
 
 Pipeline::Pipeline(PipelineParts parts) : state_(std::make_unique<State>(checked(std::move(parts)))) {}

@@ -106,6 +106,21 @@ TEST_F(FullAdjustmentTest, InertialMeasurementsPlaceKeyframesWithoutPoints) {
   ASSERT_TRUE(summary.applied);
   EXPECT_EQ(summary.keyframes, 20);
   for (std::size_t i = 9; i < 12; ++i) EXPECT_LT(world.error_of(map, keyframes[i]), 0.01) << i;
+  EXPECT_EQ(adjustment.placed_keyframes().size(), 19U) << "all but the first, which is fixed";
+}
+
+TEST_F(FullAdjustmentTest, AKeyframeThatFollowsItsParentWasNotPlaced) {
+  for (const MapPointId point : std::vector<MapPointId>(map.keyframe(last).frame.map_points))
+    if (point.valid()) map.remove_observation(point, last);
+  const std::unique_ptr<InertialHistory> history = measured_ring(19);
+  adjustment.use_inertia(*history);
+  ASSERT_TRUE(adjustment.run().applied);
+  const std::vector<double> placed = adjustment.placed_keyframes();
+  EXPECT_EQ(placed.size(), 18U);
+  EXPECT_EQ(std::count(placed.begin(), placed.end(), map.keyframe(last).frame.timestamp), 0);
+  adjustment.cancel();
+  EXPECT_FALSE(adjustment.run().applied);
+  EXPECT_TRUE(adjustment.placed_keyframes().empty());
 }
 
 /// Cannot use factors, although it has no reason to.

@@ -67,8 +67,8 @@ class Tracker {
 
   /// Estimates the poses of these frames again by the map as it is now, at the end of a run (smooth_bridges()).
   std::size_t smooth_bridges(const MapAccess& map, const DriftingPoses& drifting, const InertialHistory& inertia,
-                             Optimizer& optimizer) {
-    return holdfast::smooth_bridges(context_.history, map.map(), drifting, inertia, optimizer);
+                             Optimizer& optimizer, const std::atomic<bool>& stop) {
+    return holdfast::smooth_bridges(context_.history, map.map(), drifting, inertia, optimizer, stop);
   }
 
   /// The last tracked frame, with features, matches and pose.
