@@ -155,8 +155,8 @@ struct Pipeline::State {
     const bool drifts = result.status == TrackingStatus::inertial || result.fallback == TrackingFallback::odometry;
     if (inertia && drifts) (result.is_keyframe ? drifting.keyframes : drifting.frames).push_back(result.timestamp);
   }
-  /// After the last adjustment of the map, which places keyframes.
-  void smooth_bridges() HOLDFAST_EXCLUDES(map);
+  /// After the last adjustment of the map, which places keyframes. `before`: the trajectory before it.
+  void smooth_frames(const Trajectory& before) HOLDFAST_EXCLUDES(map);
   /// What the sensor of this pipeline has of a frame, in colour where a part needs that.
   SensorFrame used_images(const SensorFrame& given) const;
   /// Gives the frame that is tracked the depth image of its pair, if there is one and something needs it.
@@ -280,7 +280,7 @@ KeyFrameId Pipeline::State::insert_keyframe(const LockedMap& locked, const MapRe
   return first_keyframe;
 }
 
-void Pipeline::State::smooth_bridges() {
+void Pipeline::State::smooth_frames(const Trajectory& before) {
   if (!inertia) return;
   const std::vector<double> placed = flow.placed_keyframes();
   std::erase_if(drifting.keyframes,
@@ -289,6 +289,7 @@ void Pipeline::State::smooth_bridges() {
   const std::optional<MapInertia> adjusted = inertia->estimates();
   if (adjusted && locked->inertia()) locked->set_inertia(adjusted);  // belongs to the poses, interrupted or not
   if (is_interrupted) return;
+  if (!placed.empty()) tracker.follow_keyframes(locked, before);
   tracker.smooth_bridges(locked, drifting, *inertia, *parts.optimizer, is_interrupted);
 }
 
@@ -352,8 +353,9 @@ void Pipeline::finish() {
     if (s.inertia) s.inertia->set_estimates(estimates, submap);
     s.flow.keep_submap(locked, submap);
   }
+  const Trajectory before = s.inertia ? trajectory() : Trajectory();
   s.flow.adjust_after_last_loop();
-  s.smooth_bridges();
+  s.smooth_frames(before);
   s.flow.finish_surface();
   if (s.keeps_classes()) s.map.unshared().classify_points();
   for (const auto& observer : s.parts.observers) observer->on_finish(s.map.unshared());

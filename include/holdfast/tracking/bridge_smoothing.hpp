@@ -17,6 +17,12 @@ struct DriftingPoses {
   std::vector<double> keyframes;  ///< which no adjustment of the map has placed since
 };
 
+/// Moves the frames between keyframes as an adjustment of the map has moved the keyframes before and after them:
+/// between both corrections, by time. Relative to their reference keyframe alone, frames keep its old surroundings, of
+/// another scale where the adjustment has corrected that. `before`: the trajectory of this history before the
+/// adjustment.
+void follow_keyframes(FrameHistory& history, const Map& map, const Trajectory& before);
+
 /// Estimates the poses of bridges again, from the frames on both sides of each as the map has them now: a
 /// fixed-interval smoother, whose problem has priors for the tracked frames within half a second of the bridge and
 /// inertial factors between all successive frames. What the map corrected behind the bridge is thereby spread over it
