@@ -148,6 +148,7 @@ void FullAdjustment::prepare() {
     structure_lock.lock();
   }
   summary_ = {};
+  placed_keyframes_.clear();
   problem_ = {};
   points_.clear();
   problem_.robust_iterations = settings_.full_robust_iterations;
@@ -253,7 +254,7 @@ void FullAdjustment::solve() {
     summary_.stop_seconds = static_cast<double>(now_in_nanoseconds() - asked) * 1e-9;
 }
 
-/// The first solution, without weak ties, tells which of them are right.
+/// The first solution, without weak ties, tells which of them are right. It stays if there is none with these.
 BundleSummary FullAdjustment::solve_with_inertia() {
   WeakTies ties;
   if (const std::optional<MapInertia> estimates = inertia_->estimates()) ties.take_out(problem_, cluster_, *estimates);
@@ -264,12 +265,16 @@ BundleSummary FullAdjustment::solve_with_inertia() {
     return first;
   }
   ties.put_back_agreeing(problem_);
-  BundleSummary second = optimizer_.optimize_bundle(problem_, stop_);
-  ties.add_rejected(problem_);
-  second.iterations += first.iterations;
-  second.seconds += first.seconds;
-  second.initial_cost = first.initial_cost;
-  return second;
+  BundleSummary summary = optimizer_.optimize_bundle(problem_, stop_);
+  const BundleSummary& solution = summary.usable ? summary : first;  // one that is not usable changes nothing
+  summary.outliers = solution.outliers;
+  summary.final_cost = solution.final_cost;
+  summary.usable = true;
+  summary.iterations += first.iterations;
+  summary.seconds += first.seconds;
+  summary.initial_cost = first.initial_cost;
+  summary.outliers += static_cast<int>(ties.add_rejected(problem_));
+  return summary;
 }
 
 FullAdjustmentSummary FullAdjustment::apply() {
@@ -311,6 +316,12 @@ void FullAdjustment::move_map() {
     is_weak.push_back(shared[keyframes_[i].slot] < few_points && is_linked_[i] == 0 ? 1 : 0);
   const MapMotion motion(map_, keyframes_, poses, {}, is_weak);
   summary_.keyframes_carried = motion.move_keyframes(map_);
+  for (std::size_t i = 0; i < keyframes_.size() && inertia_ != nullptr; ++i) {
+    const KeyFrame* keyframe = map_.find_keyframe(keyframes_[i]);
+    if (keyframe == nullptr || problem_.poses[i].fixed) continue;
+    if (keyframe->frame.T_camera_world.matrix() == poses[i].matrix())
+      placed_keyframes_.push_back(keyframe->frame.timestamp);
+  }
   std::vector<std::uint8_t> is_placed(map_.points().slot_count(), 0);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     MapPoint* point = map_.find_point(points_[i]);

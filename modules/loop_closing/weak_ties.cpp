@@ -86,60 +86,89 @@ std::vector<std::vector<WeakTies::Deviation>> WeakTies::deviations_between(const
 void WeakTies::take_out(BundleProblem& problem, std::span<const std::uint32_t> names, const MapInertia& estimates) {
   constexpr std::size_t max_clusters = 300;  // the table of deviations grows with the cube
   ties_.clear(), rejected_.clear();
-  const std::vector<std::uint32_t> cluster = numbered(names);
-  const std::size_t count = cluster.empty() ? 0 : 1 + *std::max_element(cluster.begin(), cluster.end());
+  cluster_ = numbered(names);
+  const std::size_t count = cluster_.empty() ? 0 : 1 + *std::max_element(cluster_.begin(), cluster_.end());
   if (count < 2 || count > max_clusters) return;
-  const std::vector<std::uint32_t> homes = find_homes(problem, cluster);
-  const auto table = deviations_between(problem, cluster, count, estimates);
+  homes_ = find_homes(problem, cluster_);
+  const auto table = deviations_between(problem, cluster_, count, estimates);
   std::erase_if(problem.observations, [&](const BundleProblem::Observation& observation) {
-    const std::uint32_t home = homes[observation.point];
-    if (cluster[observation.pose] == cluster[home]) return false;
-    const Deviation& deviation = table[cluster[observation.pose]][cluster[home]];
+    const std::uint32_t home = homes_[observation.point];
+    if (cluster_[observation.pose] == cluster_[home]) return false;
+    const Deviation& deviation = table[cluster_[observation.pose]][cluster_[home]];
     if (!(deviation.position <= max_position_deviation && deviation.rotation <= max_rotation_deviation)) return false;
-    ties_.push_back({observation, home, deviation});
+    ties_.push_back({observation, deviation});
     return true;
   });
 }
 
+/// By point, the standard deviation of its distance along the ray of its home [m], by the best single observation
+/// within the home's cluster: by its disparity, or by its parallax to the home. Infinite where nothing tells the
+/// distance.
+std::vector<double> WeakTies::depth_deviations(const BundleProblem& problem) const {
+  const Camera& camera = *problem.camera;
+  std::vector<double> information(problem.points.size(), 0.0);
+  for (const BundleProblem::Observation& seen : problem.observations) {
+    const std::uint32_t home = homes_[seen.point];
+    if (cluster_[seen.pose] != cluster_[home] || seen.outlier) continue;
+    const Eigen::Isometry3d& pose = problem.poses[seen.pose].T_camera_world;
+    const Eigen::Vector3d in_camera = pose * problem.points[seen.point];
+    if (!(in_camera.z() > 0.0)) continue;
+    const Eigen::Vector3d along = pose.linear() * home_ray(problem, home, seen.point);
+    const double parallax = along.cross(in_camera.normalized()).norm(), inverse_depth = 1.0 / in_camera.z();
+    double moved = camera.fx * parallax * inverse_depth;  // [px/m]
+    if (!std::isnan(seen.right_x))
+      moved = std::max(moved, camera.baseline * camera.fx * inverse_depth * inverse_depth * std::abs(along.z()));
+    information[seen.point] = std::max(information[seen.point], moved * moved * seen.inverse_sigma2);
+  }
+  std::vector<double> deviations;
+  for (const double known : information) deviations.push_back(known > 0.0 ? 1.0 / std::sqrt(known) : infinite);
+  return deviations;
+}
+
+Eigen::Vector3d WeakTies::home_ray(const BundleProblem& problem, std::uint32_t home, std::uint32_t point) {
+  return (problem.points[point] - problem.poses[home].T_camera_world.inverse().translation()).normalized();
+}
+
 /// Whether each coordinate is within three deviations, of the pixel, of the poses and of the point along the ray of the
 /// keyframe that places it.
-bool WeakTies::agrees(const BundleProblem& problem, const Tie& tie) {
+bool WeakTies::agrees(const BundleProblem& problem, const Tie& tie, double depth_deviation) const {
   const Camera& camera = *problem.camera;
   const BundleProblem::Observation& seen = tie.observation;
   const Eigen::Isometry3d& pose = problem.poses[seen.pose].T_camera_world;
-  const Eigen::Vector3d& point = problem.points[seen.point];
-  const Eigen::Vector3d in_camera = pose * point, at_home = problem.poses[tie.home].T_camera_world * point;
+  const Eigen::Vector3d in_camera = pose * problem.points[seen.point];
   if (!(in_camera.z() > 0.0) || !in_camera.allFinite()) return false;
   const double inverse_depth = 1.0 / in_camera.z(), pixel = 1.0 / std::sqrt(seen.inverse_sigma2);
-  const Eigen::Vector3d ray = (problem.poses[tie.home].T_camera_world.inverse().linear() * at_home).normalized();
-  const double parallax = ray.cross((pose.inverse().linear() * in_camera).normalized()).norm();
-  const double bf = camera.baseline * camera.fx;
-  const double depth_deviation = bf > 0.0 ? pixel * at_home.z() * at_home.z() / bf : infinite;
+  const Eigen::Vector3d along = pose.linear() * home_ray(problem, homes_[seen.point], seen.point);
+  const double parallax = along.cross(in_camera.normalized()).norm();
   const double moved = std::hypot(tie.deviation.position, parallax > 0.0 ? parallax * depth_deviation : 0.0);
   const double deviation = std::hypot(pixel, camera.fx * moved * inverse_depth, camera.fx * tie.deviation.rotation);
   const double x = camera.fx * in_camera.x() * inverse_depth + camera.cx;
   const double y = camera.fy * in_camera.y() * inverse_depth + camera.cy;
   if (!(std::hypot(x - seen.x, y - seen.y) <= max_deviations * deviation)) return false;
   if (std::isnan(seen.right_x)) return true;
-  const double disparity_error = bf * inverse_depth - (seen.x - seen.right_x);
-  const double disparity_deviation =
-      std::hypot(2.0 * pixel, bf * inverse_depth * inverse_depth * tie.deviation.position);
-  return std::abs(disparity_error) <= max_deviations * disparity_deviation;
+  const double bf = camera.baseline * camera.fx, disparity_error = bf * inverse_depth - (seen.x - seen.right_x);
+  const double farther = std::hypot(tie.deviation.position, std::abs(along.z()) * depth_deviation);
+  return std::abs(disparity_error) <=
+         max_deviations * std::hypot(2.0 * pixel, bf * inverse_depth * inverse_depth * farther);
 }
 
 void WeakTies::put_back_agreeing(BundleProblem& problem) {
-  for (const Tie& tie : ties_) (agrees(problem, tie) ? problem.observations : rejected_).push_back(tie.observation);
+  const std::vector<double> depth_deviation = depth_deviations(problem);
+  for (const Tie& tie : ties_)
+    (agrees(problem, tie, depth_deviation[tie.observation.point]) ? problem.observations : rejected_)
+        .push_back(tie.observation);
 }
 
 void WeakTies::put_back_all(BundleProblem& problem) {
   for (const Tie& tie : ties_) problem.observations.push_back(tie.observation);
 }
 
-void WeakTies::add_rejected(BundleProblem& problem) {
+std::size_t WeakTies::add_rejected(BundleProblem& problem) {
   for (BundleProblem::Observation& observation : rejected_) {
     observation.outlier = true;
     problem.observations.push_back(observation);
   }
+  return rejected_.size();
 }
 
 }  // namespace holdfast

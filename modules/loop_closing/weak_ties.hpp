@@ -24,8 +24,8 @@ class WeakTies {
   /// Puts those back that agree with the solution to within its deviation, or all.
   void put_back_agreeing(BundleProblem& problem);
   void put_back_all(BundleProblem& problem);
-  /// Adds the rejected ones as outliers. To be called after the last solution.
-  void add_rejected(BundleProblem& problem);
+  /// Adds the rejected ones as outliers and returns their number. To be called after the last solution.
+  std::size_t add_rejected(BundleProblem& problem);
 
  private:
   /// Standard deviations between two clusters [m], [rad].
@@ -34,15 +34,19 @@ class WeakTies {
   };
   struct Tie {
     BundleProblem::Observation observation;
-    std::uint32_t home = 0;  ///< pose that observes the point in the cluster that mostly does
     Deviation deviation;
   };
 
   static std::vector<std::vector<Deviation>> deviations_between(const BundleProblem& problem,
                                                                 std::span<const std::uint32_t> cluster,
                                                                 std::size_t count, const MapInertia& estimates);
-  static bool agrees(const BundleProblem& problem, const Tie& tie);
+  std::vector<double> depth_deviations(const BundleProblem& problem) const;
+  /// Direction from a pose to a point in the world frame.
+  static Eigen::Vector3d home_ray(const BundleProblem& problem, std::uint32_t home, std::uint32_t point);
+  bool agrees(const BundleProblem& problem, const Tie& tie, double depth_deviation) const;
 
+  std::vector<std::uint32_t> cluster_;  // by pose
+  std::vector<std::uint32_t> homes_;    // by point, the first pose of the cluster that mostly observes it
   std::vector<Tie> ties_;
   std::vector<BundleProblem::Observation> rejected_;
 };

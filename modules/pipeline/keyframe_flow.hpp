@@ -83,6 +83,8 @@ class KeyframeFlow {
   /// Runs one more full adjustment if keyframes were added since the last loop, which constrain it further. With
   /// inertial measurements it runs without a loop as well.
   void adjust_after_last_loop();
+  /// See FullAdjustment::placed_keyframes(); the threads have ended.
+  const std::vector<double>& placed_keyframes() const { return adjustment_.placed_keyframes(); }
   /// Fuses every view at its final pose; the threads have ended.
   void finish_surface();
   /// Makes long adjustments end after their current iteration.

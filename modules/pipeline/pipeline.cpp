@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/pipeline/pipeline.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -154,8 +155,9 @@ struct Pipeline::State {
     const bool drifts = result.status == TrackingStatus::inertial || result.fallback == TrackingFallback::odometry;
     if (inertia && drifts) (result.is_keyframe ? drifting.keyframes : drifting.frames).push_back(result.timestamp);
   }
-  /// After the last adjustment of the map, which places keyframes.
-  void smooth_bridges() HOLDFAST_EXCLUDES(map);
+  /// After the last adjustment of the map, which places keyframes. `before`: the trajectory before it.
+  void smooth_frames(const Trajectory& before) HOLDFAST_EXCLUDES(map);
+  void smooth_trajectory() HOLDFAST_EXCLUDES(map);
   /// What the sensor of this pipeline has of a frame, in colour where a part needs that.
   SensorFrame used_images(const SensorFrame& given) const;
   /// Gives the frame that is tracked the depth image of its pair, if there is one and something needs it.
@@ -279,15 +281,26 @@ KeyFrameId Pipeline::State::insert_keyframe(const LockedMap& locked, const MapRe
   return first_keyframe;
 }
 
-void Pipeline::State::smooth_bridges() {
+void Pipeline::State::smooth_frames(const Trajectory& before) {
   if (!inertia) return;
-  const LoopRecord record = flow.loop_record();
-  if (!record.adjustments.empty() && record.adjustments.back().applied) drifting.keyframes.clear();
+  const std::vector<double> placed = flow.placed_keyframes();
+  std::erase_if(drifting.keyframes,
+                [&](double stamp) { return std::find(placed.begin(), placed.end(), stamp) != placed.end(); });
   const LockedMap locked(map, LockPriority::background);
   const std::optional<MapInertia> adjusted = inertia->estimates();
   if (adjusted && locked->inertia()) locked->set_inertia(adjusted);  // belongs to the poses, interrupted or not
   if (is_interrupted) return;
-  tracker.smooth_bridges(locked, drifting, *inertia, *parts.optimizer);
+  if (!placed.empty()) tracker.follow_keyframes(locked, before);
+  tracker.smooth_bridges(locked, drifting, *inertia, *parts.optimizer, is_interrupted);
+}
+
+void Pipeline::State::smooth_trajectory() {
+  if (is_interrupted) return;
+  const LockedMap locked(map, LockPriority::background);
+  flow.in_background([&](StageTimes& times) {
+    const StageTimer timer(times, "smooth trajectory");
+    tracker.smooth_trajectory(locked);
+  });
 }
 
 Pipeline::Pipeline(PipelineParts parts) : state_(std::make_unique<State>(checked(std::move(parts)))) {}
@@ -350,15 +363,10 @@ void Pipeline::finish() {
     if (s.inertia) s.inertia->set_estimates(estimates, submap);
     s.flow.keep_submap(locked, submap);
   }
+  const Trajectory before = s.inertia ? trajectory() : Trajectory();
   s.flow.adjust_after_last_loop();
-  s.smooth_bridges();
-  if (!s.is_interrupted) {
-    const LockedMap locked(s.map, LockPriority::background);
-    s.flow.in_background([&](StageTimes& times) {
-      const StageTimer timer(times, "smooth trajectory");
-      s.tracker.smooth_trajectory(locked);
-    });
-  }
+  s.smooth_frames(before);
+  s.smooth_trajectory();
   s.flow.finish_surface();
   if (s.keeps_classes()) s.map.unshared().classify_points();
   for (const auto& observer : s.parts.observers) observer->on_finish(s.map.unshared());

@@ -106,6 +106,21 @@ TEST_F(FullAdjustmentTest, InertialMeasurementsPlaceKeyframesWithoutPoints) {
   ASSERT_TRUE(summary.applied);
   EXPECT_EQ(summary.keyframes, 20);
   for (std::size_t i = 9; i < 12; ++i) EXPECT_LT(world.error_of(map, keyframes[i]), 0.01) << i;
+  EXPECT_EQ(adjustment.placed_keyframes().size(), 19U) << "all but the first, which is fixed";
+}
+
+TEST_F(FullAdjustmentTest, AKeyframeThatFollowsItsParentWasNotPlaced) {
+  for (const MapPointId point : std::vector<MapPointId>(map.keyframe(last).frame.map_points))
+    if (point.valid()) map.remove_observation(point, last);
+  const std::unique_ptr<InertialHistory> history = measured_ring(19);
+  adjustment.use_inertia(*history);
+  ASSERT_TRUE(adjustment.run().applied);
+  const std::vector<double> placed = adjustment.placed_keyframes();
+  EXPECT_EQ(placed.size(), 18U);
+  EXPECT_EQ(std::count(placed.begin(), placed.end(), map.keyframe(last).frame.timestamp), 0);
+  adjustment.cancel();
+  EXPECT_FALSE(adjustment.run().applied);
+  EXPECT_TRUE(adjustment.placed_keyframes().empty());
 }
 
 /// Cannot use factors, although it has no reason to.
@@ -132,6 +147,68 @@ TEST_F(FullAdjustmentTest, AdjustsWithoutFactorsThatCannotBeUsed) {
   EXPECT_TRUE(twice.run().applied);
   EXPECT_EQ(visual.factors, (std::vector<std::size_t>{19, 0}));
   EXPECT_LT(mean_error(), before);
+}
+
+/// Solves once and fails then.
+class OnlyOnce final : public Optimizer {
+ public:
+  BundleSummary optimize_bundle(BundleProblem& problem, const std::atomic<bool>& stop) override {
+    ++calls;
+    if (calls > 1) return {};
+    const BundleSummary summary = optimizer_->optimize_bundle(problem, stop);
+    last = problem.poses.back().T_camera_world;
+    observations = problem.observations.size();
+    outliers = summary.outliers;
+    return summary;
+  }
+  GraphSummary optimize_pose_graph(PoseGraphProblem&) override { return {}; }
+
+  int calls = 0, outliers = 0;
+  Eigen::Isometry3d last;
+  std::size_t observations = 0;
+
+ private:
+  std::unique_ptr<Optimizer> optimizer_ = make_optimizer();
+};
+
+/// Leaves the last four keyframes few points in common with the others.
+void leave_few_ties(Map& map, std::size_t count) {
+  const std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
+  const std::uint64_t first = map.keyframe(keyframes[keyframes.size() - 4]).sequence;
+  std::size_t kept = 0;
+  for (const MapPointId id : map.points().ids()) {
+    const std::vector<Observation> seen(map.point(id).observations.begin(), map.point(id).observations.end());
+    const auto is_late = [&](const Observation& other) { return map.keyframe(other.keyframe).sequence >= first; };
+    if (std::all_of(seen.begin(), seen.end(), is_late) || std::none_of(seen.begin(), seen.end(), is_late)) continue;
+    if (kept++ < count) continue;
+    for (const Observation& other : seen)
+      if (is_late(other) && map.find_point(id) != nullptr) map.remove_observation(id, other.keyframe);
+  }
+  for (const KeyFrameId id : keyframes) map.update_covisibility(id);
+}
+
+TEST_F(FullAdjustmentTest, TheSolutionWithoutTiesStaysIfThatWithThemFails) {
+  leave_few_ties(map, 20);
+  OnlyOnce once;
+  FullAdjustment tied{LoopClosingSettings{}, {map, map_mutex, structure_mutex}, once};
+  const std::unique_ptr<InertialHistory> history = measured_ring();
+  tied.use_inertia(*history);
+  const FullAdjustmentSummary summary = tied.run();
+  EXPECT_TRUE(summary.applied);
+  ASSERT_EQ(once.calls, 2) << "with ties, and none without inertia";
+  EXPECT_LT(once.observations, static_cast<std::size_t>(summary.observations));
+  EXPECT_TRUE(map.pose_of(last).isApprox(once.last, 1e-12));
+}
+
+TEST_F(FullAdjustmentTest, RejectedTiesAreOutliers) {
+  leave_few_ties(map, 20);
+  Frame& frame = map.keyframe(last).frame;
+  for (std::size_t i = 0; i < frame.size(); ++i) frame.y[i] += 60.0F;
+  OnlyOnce once;
+  FullAdjustment tied{LoopClosingSettings{}, {map, map_mutex, structure_mutex}, once};
+  const std::unique_ptr<InertialHistory> history = measured_ring();
+  tied.use_inertia(*history);
+  EXPECT_GT(tied.run().bundle.outliers, once.outliers);
 }
 
 /// Moves the last camera far away, whatever the problem.

@@ -49,6 +49,10 @@ class FullAdjustment {
     return apply();
   }
 
+  /// Time stamps of the keyframes that the last adjustment placed [s], with inertial measurements: neither fixed nor
+  /// carried with others. None if it was not applied. For the thread that calls apply().
+  const std::vector<double>& placed_keyframes() const { return placed_keyframes_; }
+
   /// Requests solve() to end within one iteration and apply() to have no effect.
   void request_stop();
   /// Stops this adjustment and all later ones, which end before their first iteration. From any thread.
@@ -84,6 +88,7 @@ class FullAdjustment {
   std::vector<std::uint8_t> is_fixed_without_links_;  // by pose
   std::vector<MapPointId> points_;                    // by point
   std::vector<Eigen::Vector3d> before_;               // positions of the points before the adjustment
+  std::vector<double> placed_keyframes_;
   FullAdjustmentSummary summary_;
 };
 

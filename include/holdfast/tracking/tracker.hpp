@@ -66,10 +66,14 @@ class Tracker {
   /// Ends tracking: withdraws unconfirmed poses after a loss, and tracks kept frames backwards.
   void finish(const MapAccess&, StageTimes& times) { recovery_.finish(times); }
 
+  /// Moves frames as the last adjustment moved the keyframes before and after them (holdfast::follow_keyframes()).
+  void follow_keyframes(const MapAccess& map, const Trajectory& before) {
+    holdfast::follow_keyframes(context_.history, map.map(), before);
+  }
   /// Estimates the poses of these frames again by the map as it is now, at the end of a run (smooth_bridges()).
   std::size_t smooth_bridges(const MapAccess& map, const DriftingPoses& drifting, const InertialHistory& inertia,
-                             Optimizer& optimizer) {
-    return holdfast::smooth_bridges(context_.history, map.map(), drifting, inertia, optimizer);
+                             Optimizer& optimizer, const std::atomic<bool>& stop) {
+    return holdfast::smooth_bridges(context_.history, map.map(), drifting, inertia, optimizer, stop);
   }
 
   /// Smooths the trajectory at the end of a run, if the settings say so (trajectory_smoothing.hpp).

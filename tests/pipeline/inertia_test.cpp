@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Inertial measurements in adjustments of the whole map, in a whole run.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "holdfast/evaluation/evaluation.hpp"
+#include "holdfast/pipeline/pipeline_builder.hpp"
+#include "holdfast/settings/orb.hpp"
+#include "holdfast/settings/schur.hpp"
+#include "holdfast/simulation/imu_sensor.hpp"
+#include "holdfast/simulation/scene_file.hpp"
+#include "holdfast/simulation/simulator.hpp"
+
+namespace holdfast {
+namespace {
+
+/// A camera among objects that rest. Its lens is covered for 0.8 s.
+class InertiaTest : public ::testing::Test {
+ protected:
+  struct Run {
+    Trajectory trajectory, keyframes;
+    std::optional<MapInertia> inertia;
+  };
+
+  InertiaTest() {
+    simulation::ImuSensor sensor(simulator_.path(), imu_, 1);
+    for (std::uint64_t i = 0; i < simulator_.frame_count(); ++i) {
+      SensorFrame frame = simulator_.frame(i);
+      frame.imu = sensor.take(frame.timestamp);
+      if (frame.timestamp > 3.5 && frame.timestamp < 4.3) frame.colour.setTo(0), frame.depth.setTo(0);
+      truth_.push_back({frame.timestamp, *frame.truth->T_world_camera});
+      frame.truth.reset();
+      frames_.push_back(std::move(frame));
+    }
+  }
+  Run run(bool is_inertial) const {
+    TrackingSettings tracking;
+    tracking.inertia = true;
+    MappingSettings mapping;
+    mapping.inertia = is_inertial;
+    Pipeline pipeline = PipelineBuilder()
+                            .camera(simulator_.camera())
+                            .sensor(Sensor::rgbd)
+                            .imu(imu_)
+                            .features(OrbSettings{.count = 500})
+                            .optimizer(SchurSettings{})
+                            .tracking(tracking)
+                            .mapping(mapping)
+                            .build();
+    for (const SensorFrame& frame : frames_) pipeline.feed(frame);
+    pipeline.finish();
+    return {pipeline.trajectory(), pipeline.keyframe_trajectory(), pipeline.map().inertia()};
+  }
+  Statistics error(const Trajectory& trajectory) const { return evaluate(truth_, trajectory, {}).absolute_error; }
+
+  const ImuCalibration imu_ = *find_imu("bmi055");
+  simulation::Simulator simulator_{
+      simulation::read_scene({}, {"camera.path=xyz", "seed=3", "frame_rate=20", "duration=6"}),
+      *find_camera("tum_fr3")};
+  std::vector<SensorFrame> frames_;
+  Trajectory truth_;
+};
+
+bool is_same(const Trajectory& a, const Trajectory& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const TimedPose& x, const TimedPose& y) {
+    return x.timestamp == y.timestamp && x.T_world_camera.matrix() == y.T_world_camera.matrix();
+  });
+}
+
+TEST_F(InertiaTest, AMapWithMotionsIsMoreAccurateAndTheSameInEachRun) {
+  const Run linked = run(true), repeated = run(true), visual = run(false);
+  ASSERT_EQ(linked.trajectory.size(), frames_.size()) << "one trajectory";
+  EXPECT_TRUE(is_same(linked.trajectory, repeated.trajectory));
+  EXPECT_TRUE(is_same(linked.keyframes, repeated.keyframes));
+  EXPECT_LT(error(linked.trajectory).rmse, 0.0025);
+  EXPECT_LT(error(linked.trajectory).rmse, 0.95 * error(visual.trajectory).rmse);
+  EXPECT_LT(error(linked.keyframes).rmse, 0.95 * error(visual.keyframes).rmse);
+  EvaluationOptions with_scale;
+  with_scale.alignment = AlignmentKind::sim3;
+  EXPECT_NEAR(evaluate(truth_, linked.trajectory, with_scale).alignment.scale, 1.0, 0.005);
+  ASSERT_TRUE(linked.inertia);
+  const Eigen::Vector3d down(0.0, 0.0, -1.0), gravity = linked.inertia->gravity.normalized();
+  const auto in_camera = [](const Trajectory& poses, const Eigen::Vector3d& direction) {
+    return poses.front().T_world_camera.linear().transpose() * direction;
+  };
+  EXPECT_GT(in_camera(linked.trajectory, gravity).dot(in_camera(truth_, down)), std::cos(0.03));
+}
+
+}  // namespace
+}  // namespace holdfast
