@@ -48,8 +48,10 @@ KeyframeFlow::KeyframeFlow(PipelineParts& parts, GuardedMap& map, MovingWorld& m
   if (parts.surface.enabled && scene_) surface_.emplace(scene_->camera(), parts.surface);
   if (surface_ && parts.surface.carving_interval > 0.0)
     carving_.emplace(parts.surface.carving_interval, CarvingViews::per_keyframe * parts.dense_map.keyframes);
-  if (surface_ && parts.surface.interval > 0.0)
-    fused_frames_.emplace(scene_->sampler(), parts.surface.interval, parts.dense_map.keyframes);
+  // Without masks they would add surface of people, which carving has to remove again.
+  if (surface_ && parts.surface.interval > 0.0 && moving_world.expects_masks())
+    fused_frames_.emplace(scene_->sampler(), parts.surface.interval, parts.surface.frames_per_keyframe,
+                          parts.dense_map.keyframes);
   if (surface_ && parts.surface.resting_time > 0.0) resting_.emplace(parts.surface.resting_time);
   const std::vector<std::string>& out = parts.dense_map.classes;
   for (const std::string& name : parts.segmenter->classes())
@@ -303,7 +305,7 @@ void KeyframeFlow::keep_for_surface(const SensorFrame& sensor_frame, const Frame
     return;
   }
   if (result.status != TrackingStatus::tracked || result.fallback != TrackingFallback::none) return;
-  const bool is_fused = fused_frames_ && fused_frames_->is_due(frame.timestamp);
+  const bool is_fused = wants_frame(frame);
   if (!is_fused && !(carving_ && carving_->is_due(frame.timestamp))) return;
   Eigen::Isometry3d T_keyframe_world;
   {
@@ -315,6 +317,19 @@ void KeyframeFlow::keep_for_surface(const SensorFrame& sensor_frame, const Frame
   if (!is_fused) return carving_->add(frame, result.keyframe, T_keyframe_world);
   fused_frames_->add(sensor_frame, frame, result.keyframe, T_keyframe_world, left_out_);
   if (carving_) carving_->keyframe_kept(frame.timestamp);
+}
+
+bool KeyframeFlow::wants_frame(const Frame& frame) {
+  if (!fused_frames_ || !fused_frames_->is_due(frame.timestamp)) return false;
+  // While a thread fuses, a later frame does as well.
+  if (!is_threaded())
+    surface_mutex_.lock();
+  else if (!surface_mutex_.try_lock())
+    return false;
+  const AdoptedLock lock(surface_mutex_);
+  if (FusedFrames::is_worthwhile(frame, surface_->field(), left_out_)) return true;
+  fused_frames_->leave_out(frame.timestamp);
+  return false;
 }
 
 std::vector<KeptView> KeyframeFlow::views_of_surface() const {

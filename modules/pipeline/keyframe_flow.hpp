@@ -159,6 +159,8 @@ class KeyframeFlow {
   /// Keeps a frame between keyframes if the surface is to be fused from it, or carved by its coarse depth.
   void keep_for_surface(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result,
                         StageTimes& times) HOLDFAST_EXCLUDES(map_);
+  /// Whether a frame between keyframes is to be fused into the surface.
+  bool wants_frame(const Frame& frame) HOLDFAST_EXCLUDES(surface_mutex_);
   /// What the surface is made of: kept views and those that only carve, by increasing frame index.
   std::vector<KeptView> views_of_surface() const;
   /// Adds a kept view to the surface, if there are both.

@@ -64,13 +64,16 @@ struct Block {
   std::array<float, size> balance{};                 ///< see SurfaceField, in units of a view with the number `last`
   std::array<std::uint16_t, size> weight{};          ///< sum
   std::array<std::uint16_t, size> last{};            ///< largest number of a view in the balance
-  std::array<std::uint8_t, size> views{};            ///< that observed the surface
+  std::array<std::uint8_t, size> views{};            ///< that observed the surface as static
+  std::array<std::uint8_t, size> moving{};           ///< that observed a surface as dynamic
   std::unique_ptr<std::array<Colour, size>> colour;  ///< near the surface
   std::unique_ptr<std::array<Votes, size>> votes;    ///< the same, where views have classes
 
   static constexpr int index(int x, int y, int z) { return (x * side + y) * side + z; }
 
-  bool is_observed(std::size_t at, int minimum_views) const { return weight[at] > 0 && views[at] >= minimum_views; }
+  bool is_observed(std::size_t at, int minimum_views) const {
+    return weight[at] > 0 && views[at] >= minimum_views && 2 * views[at] > moving[at];
+  }
   /// Mean distance of an observed voxel, from -1 to 1.
   float mean(std::size_t at) const {
     return static_cast<float>(distance[at]) / (static_cast<float>(weight[at]) * static_cast<float>(truncation_units));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "holdfast/core/simd.hpp"
@@ -91,8 +92,9 @@ HOLDFAST_INLINE void add_balance(const ViewGeometry& view, Block& block, std::si
   const Int8 is_later = view.number > last;
   Int8 views = is_later ? view.number - last : last - view.number;
   views = views > most_faded ? Int8{} + most_faded : views;
-  Float8 factor;
-  for (int k = 0; k < 8; ++k) factor[k] = faded[static_cast<std::size_t>(views[k])];
+  Float8 factor = Float8{} + faded[static_cast<std::size_t>(views[0])];
+  if (any_of(views != views[0]))
+    for (int k = 1; k < 8; ++k) factor[k] = faded[static_cast<std::size_t>(views[k])];
   const Float8 sum =
       (is_later ? balance * factor : balance) + static_cast<float>(view.sign) * (is_later ? amount : amount * factor);
   balance = is_active ? sum : balance;
@@ -101,9 +103,22 @@ HOLDFAST_INLINE void add_balance(const ViewGeometry& view, Block& block, std::si
   std::memcpy(&block.last[first], &last_bits, sizeof(last_bits));
 }
 
-/// Adds a view to the eight voxels from `first` on. `x`, `y`, `z`: the first one in the frame of the camera.
+/// Counts a view in eight counters, where `is_active`.
+HOLDFAST_INLINE void count_view(const ViewGeometry& view, std::uint8_t* counters, const Int8& is_active) {
+  Byte8 bits;
+  std::memcpy(&bits, counters, sizeof(bits));
+  Int8 counts = __builtin_convertvector(bits, Int8);
+  counts += is_active & (counts < 255) & (Int8{} + view.sign);
+  bits = __builtin_convertvector(counts < 0 ? Int8{} : counts, Byte8);
+  std::memcpy(counters, &bits, sizeof(bits));
+}
+
+/// Adds a view to the eight voxels from `first` on. `x`, `y`, `z`: the first one in the frame of the camera. `far`: no
+/// depth in the block's part of a view that only carves is larger.
 template <bool only_carves>
-HOLDFAST_INLINE void update_row(const ViewGeometry& view, float x, float y, float z, Block& block, std::size_t first) {
+HOLDFAST_INLINE void update_row(const ViewGeometry& view, float x, float y, float z, float far, Block& block,
+                                std::size_t first) {
+  if (only_carves && far - std::min(z, z + 7.0F * view.rotation[8]) <= view.truncation) return;  // the margin or less
   const Float8 steps = {0.0F, 1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F, 7.0F};
   const Float8 depth = z + steps * view.rotation[8];
   const Float8 inverse = 1.0F / depth;
@@ -119,10 +134,9 @@ HOLDFAST_INLINE void update_row(const ViewGeometry& view, float x, float y, floa
   const Float8 margin = square_margin < view.truncation ? Float8{} + view.truncation : square_margin;
   if constexpr (only_carves) {
     Float8 near;
-    for (int k = 0; k < 8; ++k) near[k] = view.pixels[place[k]].near;
-    const Int8 is_active = is_inside & (near > 0.0F) & (depth - near <= margin);
-    if (!any_of(is_active)) return;
-    add_balance(view, block, first, is_active, (near - depth > margin) ? Float8{} - 1.0F : Float8{} + 1.0F);
+    for (int k = 0; k < 8; ++k) near[k] = view.near[place[k]];
+    const Int8 is_free = is_inside & (near - depth > margin);
+    if (any_of(is_free)) add_balance(view, block, first, is_free, Float8{} - 1.0F);
   } else {
     const Pixels8 pixels = load_pixels(view.pixels, place);
     const Float8 &surface = pixels.depth, &near = pixels.near, &slope = pixels.slope;
@@ -133,14 +147,15 @@ HOLDFAST_INLINE void update_row(const ViewGeometry& view, float x, float y, floa
     const Int8 is_near = is_inside & ~is_free & (weight != 0) & (length <= view.truncation);
     const Int8 counts = is_free | (is_near & (distance < 0.5F * view.truncation));
     if (any_of(counts)) add_balance(view, block, first, counts, is_free ? Float8{} - 1.0F : Float8{} + 1.0F);
+    const Float8 behind = (surface + depth) * slope;
+    const Int8 is_dynamic = is_inside & (surface < 0.0F) & ((behind < 0.0F ? -behind : behind) <= view.truncation);
+    if (any_of(is_dynamic)) count_view(view, &block.moving[first], is_dynamic);
     if (!any_of(is_near)) return;
 
     Int8 sum;
     Short8 weight_bits;
-    Byte8 view_bits;
     std::memcpy(&sum, &block.distance[first], sizeof(sum));
     std::memcpy(&weight_bits, &block.weight[first], sizeof(weight_bits));
-    std::memcpy(&view_bits, &block.views[first], sizeof(view_bits));
     const Float8 scaled = distance / view.truncation * static_cast<float>(Block::truncation_units);
     const Float8 rounded = scaled + (scaled < 0.0F ? Float8{} - 0.5F : Float8{} + 0.5F);
     const Int8 units = __builtin_convertvector(is_near ? rounded : Float8{}, Int8);
@@ -152,14 +167,10 @@ HOLDFAST_INLINE void update_row(const ViewGeometry& view, float x, float y, floa
     sum = is_full ? (sum - (sum < 0)) >> 1 : sum;
     weights += is_near & (view.sign * weight);
     weights = weights < 0 ? Int8{} : weights;
-    Int8 views = __builtin_convertvector(view_bits, Int8);
-    views += is_near & (views < 255) & (Int8{} + view.sign);
-    views = views < 0 ? Int8{} : views;
     weight_bits = __builtin_convertvector(weights, Short8);
-    view_bits = __builtin_convertvector(views, Byte8);
     std::memcpy(&block.distance[first], &sum, sizeof(sum));
     std::memcpy(&block.weight[first], &weight_bits, sizeof(weight_bits));
-    std::memcpy(&block.views[first], &view_bits, sizeof(view_bits));
+    count_view(view, &block.views[first], is_near);
     const Int8 has_colour = is_near & (length < 1.5F * view.voxel);
     for (int k = 0; k < 8; ++k)
       if (has_colour[k] != 0) {
@@ -171,31 +182,31 @@ HOLDFAST_INLINE void update_row(const ViewGeometry& view, float x, float y, floa
 }
 
 template <bool only_carves>
-HOLDFAST_INLINE void update_voxels(const ViewGeometry& view, const float* corner, Block& block) {
+HOLDFAST_INLINE void update_voxels(const ViewGeometry& view, const float* corner, float far, Block& block) {
   const float* const r = view.rotation;
   for (int i = 0; i < Block::side * Block::side; ++i) {
     const auto a = static_cast<float>(i / Block::side), b = static_cast<float>(i % Block::side);
     update_row<only_carves>(view, corner[0] + a * r[0] + b * r[3], corner[1] + a * r[1] + b * r[4],
-                            corner[2] + a * r[2] + b * r[5], block, static_cast<std::size_t>(i * Block::side));
+                            corner[2] + a * r[2] + b * r[5], far, block, static_cast<std::size_t>(i * Block::side));
   }
 }
 
-HOLDFAST_INLINE void carve_all(const ViewGeometry& view, const float*, Block& block) {
+HOLDFAST_INLINE void carve_all(const ViewGeometry& view, Block& block) {
   for (std::size_t i = 0; i < Block::size; i += Block::side) add_balance(view, block, i, Int8{} - 1, Float8{} - 1.0F);
 }
 
 // The same loops once per set of instructions.
-#define HOLDFAST_LOOPS(name, target)                                                            \
-  struct name {                                                                                 \
-    target static void fuse(const ViewGeometry& view, const float* corner, Block& block) {      \
-      update_voxels<false>(view, corner, block);                                                \
-    }                                                                                           \
-    target static void carve(const ViewGeometry& view, const float* corner, Block& block) {     \
-      update_voxels<true>(view, corner, block);                                                 \
-    }                                                                                           \
-    target static void carve_all(const ViewGeometry& view, const float* corner, Block& block) { \
-      surface::carve_all(view, corner, block);                                                  \
-    }                                                                                           \
+#define HOLDFAST_LOOPS(name, target)                                                               \
+  struct name {                                                                                    \
+    target static void fuse(const ViewGeometry& view, const float* corner, float far, Block& b) {  \
+      update_voxels<false>(view, corner, far, b);                                                  \
+    }                                                                                              \
+    target static void carve(const ViewGeometry& view, const float* corner, float far, Block& b) { \
+      update_voxels<true>(view, corner, far, b);                                                   \
+    }                                                                                              \
+    target static void carve_all(const ViewGeometry& view, const float*, float, Block& b) {        \
+      surface::carve_all(view, b);                                                                 \
+    }                                                                                              \
   };
 
 HOLDFAST_LOOPS(ScalarLoops, )
@@ -225,6 +236,7 @@ Integrator::Integrator(const ViewImage& image, const Eigen::Isometry3d& T_world_
   view_.cx = static_cast<float>(camera.cx + 0.5), view_.cy = static_cast<float>(camera.cy + 0.5);
   view_.width = static_cast<float>(camera.width), view_.height = static_cast<float>(camera.height);
   view_.pixels = image.pixels();
+  view_.near = image.near();
   view_.labels = image.labels();
   view_.number = static_cast<std::int32_t>(std::min(number, largest_number));
   view_.sign = sign;
@@ -245,12 +257,12 @@ void Integrator::update(const Blocks& blocks, std::uint64_t births) const {
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     const Eigen::Vector3f corner =
         rotation_ * (coordinates[i].cast<float>() * (view_.voxel * Block::side)) + translation_;
-    const Reach reach = reach_of(corner);
+    const auto [reach, far] = reach_of(corner);
     if (reach == Reach::nothing) continue;
     Block& block = *blocks.list()[i];
     if (block.birth >= births) return;  // and so are all that follow
     block.version = blocks.version();
-    (reach == Reach::all_free ? carve_all_ : update_voxels_)(view_, corner.data(), block);
+    (reach == Reach::all_free ? carve_all_ : update_voxels_)(view_, corner.data(), far, block);
   }
 }
 
@@ -258,13 +270,14 @@ float Integrator::margin_at(float depth) const {
   return std::max(view_.truncation, ViewGeometry::constant_margin + ViewGeometry::quadratic_margin * depth * depth);
 }
 
-Integrator::Reach Integrator::reach_of(const Eigen::Vector3f& corner) const {
+std::pair<Integrator::Reach, float> Integrator::reach_of(const Eigen::Vector3f& corner) const {
   constexpr float rounding = 0.01F;  // [px]
   const Eigen::Vector3f centre = corner + centre_;
   const float nearest = centre.z() - half_.z(), last = centre.z() + half_.z();
-  if (last < nearest_depth) return Reach::nothing;
+  if (last < nearest_depth) return {Reach::nothing, 0.0F};
   // Close to the camera the projection of the box may be unbounded.
-  if (nearest < nearest_depth) return Reach::something;
+  constexpr float infinite = std::numeric_limits<float>::infinity();
+  if (nearest < nearest_depth) return {Reach::something, infinite};
   const float of_nearest = 1.0F / nearest, of_last = 1.0F / last;
   const auto lower = [&](float side, float focal_length, float principal_point) {
     return focal_length * side * (side < 0.0F ? of_nearest : of_last) + principal_point - rounding;
@@ -276,16 +289,17 @@ Integrator::Reach Integrator::reach_of(const Eigen::Vector3f& corner) const {
   const float top = lower(centre.y() - half_.y(), view_.fy, view_.cy);
   const float right = upper(centre.x() + half_.x(), view_.fx, view_.cx);
   const float bottom = upper(centre.y() + half_.y(), view_.fy, view_.cy);
-  if (right < 0.0F || bottom < 0.0F || left > view_.width || top > view_.height) return Reach::nothing;
+  if (right < 0.0F || bottom < 0.0F || left > view_.width || top > view_.height) return {Reach::nothing, 0.0F};
   const int right_pixel = static_cast<int>(right), bottom_pixel = static_cast<int>(bottom);
-  const float farthest = image_.farthest(static_cast<int>(std::max(left, 0.0F)), static_cast<int>(std::max(top, 0.0F)),
-                                         right_pixel, bottom_pixel);
-  if (farthest <= 0.0F || nearest >= farthest + view_.truncation / ViewImage::smallest_slope) return Reach::nothing;
-  if (!image_.only_carves()) return Reach::something;
-  if (nearest > farthest + margin_at(last)) return Reach::nothing;
   const int left_pixel = static_cast<int>(std::floor(left)), top_pixel = static_cast<int>(std::floor(top));
-  return image_.nearest(left_pixel, top_pixel, right_pixel, bottom_pixel) - last > margin_at(last) ? Reach::all_free
-                                                                                                   : Reach::something;
+  if (image_.only_carves()) {
+    const auto [near, far] = image_.near_range(left_pixel, top_pixel, right_pixel, bottom_pixel);
+    if (far - nearest <= margin_at(nearest)) return {Reach::nothing, 0.0F};
+    return {near - last > margin_at(last) ? Reach::all_free : Reach::something, far};
+  }
+  const float farthest = image_.farthest(left_pixel, top_pixel, right_pixel, bottom_pixel);
+  const bool is_behind = nearest >= farthest + view_.truncation / ViewImage::smallest_slope;
+  return {farthest <= 0.0F || is_behind ? Reach::nothing : Reach::something, infinite};
 }
 
 }  // namespace holdfast::surface

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <utility>
 
 #include "blocks.hpp"
 #include "holdfast/surface/surface_settings.hpp"
@@ -14,10 +15,11 @@ namespace holdfast::surface {
 struct ViewGeometry {
   float rotation[9] = {}, translation[3] = {};  ///< T_camera_world; the rotation by columns, times the side of a voxel
   float fx = 0.0F, fy = 0.0F, cx = 0.0F, cy = 0.0F, width = 0.0F, height = 0.0F;
-  const ViewImage::Pixel* pixels = nullptr;
-  const std::uint8_t* labels = nullptr;   ///< of the pixels; nullptr without classes
-  float voxel = 0.0F, truncation = 0.0F;  ///< [m]
-  std::int32_t number = 0, sign = 1;      ///< see SurfaceField::Fusion; 1 = add the view, -1 = subtract it
+  const ViewImage::Pixel* pixels = nullptr;  ///< of a view that does not only carve
+  const float* near = nullptr;               ///< of a view that only carves: see ViewImage::near()
+  const std::uint8_t* labels = nullptr;      ///< of the pixels; nullptr without classes
+  float voxel = 0.0F, truncation = 0.0F;     ///< [m]
+  std::int32_t number = 0, sign = 1;         ///< see SurfaceField::Fusion; 1 = add the view, -1 = subtract it
 
   /// Distance by which a surface must lie behind a voxel for it to be free [m].
   static constexpr float constant_margin = 0.04F, quadratic_margin = 0.01F;
@@ -39,16 +41,16 @@ class Integrator {
 
   float margin_at(float depth) const;
   /// By the position of a block's corner in the camera. Nothing of blocks outside the image, and of those behind all
-  /// that is measured there.
-  Reach reach_of(const Eigen::Vector3f& corner) const;
+  /// that is measured there. Second: no depth is larger there, of a view that only carves [m].
+  std::pair<Reach, float> reach_of(const Eigen::Vector3f& corner) const;
 
   const ViewImage& image_;
   ViewGeometry view_;
   Eigen::Matrix3f rotation_;
   Eigen::Vector3f translation_;
   Eigen::Vector3f centre_, half_;  // of a block in the camera's axes, relative to its corner; half the sides of its box
-  void (*update_voxels_)(const ViewGeometry& view, const float* corner, Block& block);
-  void (*carve_all_)(const ViewGeometry& view, const float* corner, Block& block);
+  void (*update_voxels_)(const ViewGeometry& view, const float* corner, float far, Block& block);
+  void (*carve_all_)(const ViewGeometry& view, const float* corner, float far, Block& block);
 };
 
 }  // namespace holdfast::surface

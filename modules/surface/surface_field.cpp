@@ -69,7 +69,7 @@ struct SurfaceField::Parts {
     Integrator(image, fusion.T_world_camera, fusion.number, sign, settings).update(blocks, fusion.blocks);
   }
   Fusion put_in(const ViewImage& image, const Eigen::Isometry3d& T_world_camera, std::uint32_t number) {
-    create_blocks(image, T_world_camera, settings.voxel, blocks);
+    if (!image.only_carves()) create_blocks(image, T_world_camera, settings.voxel, blocks);
     const Fusion fusion{T_world_camera, number, blocks.births()};
     integrate(image, fusion, 1);
     return fusion;
@@ -125,6 +125,17 @@ std::vector<SurfacePatch> SurfaceField::changes(std::uint64_t since, int coarsen
 
 std::optional<SurfaceField::Sample> SurfaceField::sample(const Eigen::Vector3f& point) const {
   return surface::sample(parts_->blocks, parts_->settings, point / static_cast<float>(parts_->settings.voxel));
+}
+
+std::size_t SurfaceField::count_unobserved(const std::vector<Eigen::Vector3f>& points, int views) const {
+  std::size_t unobserved = 0;
+  for (const Eigen::Vector3f& point : points) {
+    const Eigen::Vector3i voxel = (point / static_cast<float>(parts_->settings.voxel)).array().round().cast<int>();
+    const std::int32_t found = parts_->blocks.find({voxel.x() >> 3, voxel.y() >> 3, voxel.z() >> 3});
+    const auto at = static_cast<std::size_t>(Block::index(voxel.x() & 7, voxel.y() & 7, voxel.z() & 7));
+    if (found < 0 || !parts_->blocks.list()[static_cast<std::size_t>(found)]->is_observed(at, views)) ++unobserved;
+  }
+  return unobserved;
 }
 
 std::size_t SurfaceField::block_count() const { return parts_->blocks.list().size(); }

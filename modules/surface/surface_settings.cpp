@@ -33,11 +33,15 @@ void SurfaceSettings::describe(ParameterTable<SurfaceSettings>& table) {
       .unit("s");
   table
       .add("interval", &S::interval,
-           "time between frames that are fused beside the keyframes, with the masks that were propagated to them: they "
-           "see more and average the sensor's noise. They count for `minimum_views`, and at most `dense_map.keyframes` "
-           "of them are kept, which doubles the memory of the images; 0: keyframes alone are fused")
+           "minimum time between frames that are fused beside the keyframes, with the masks that were propagated to "
+           "them, where fewer than 8 views observed the surface: they see more and average the sensor's noise. Not "
+           "without a segmenter. At most `dense_map.keyframes` of them are kept; 0: keyframes alone are fused")
       .range(0, 60)
       .unit("s");
+  table
+      .add("frames_per_keyframe", &S::frames_per_keyframe,
+           "maximum number of these frames for each keyframe, on average; bounds time and memory")
+      .range(0, 1000);
   table
       .add("resting_time", &S::resting_time,
            "time after which something that moved and stands still, such as a chair that was moved, counts as part of "

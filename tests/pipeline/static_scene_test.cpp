@@ -172,18 +172,23 @@ TEST(PipelineSurface, HoldsFramesWithoutFeaturesIfAsked) {
   }
 }
 
-TEST(PipelineSurface, FusesFramesBetweenKeyframesIfAsked) {
+TEST(PipelineSurface, FusesFramesBetweenKeyframesIfThereAreMasks) {
   if (!SurfaceField::is_available()) GTEST_SKIP() << "built without OpenVDB";
-  test::PointWorld world(find_camera("tum_fr3").value());
-  PipelineParts parts = parts_with_surface(world);
-  parts.surface.interval = 0.1;
-  Pipeline pipeline(std::move(parts));
-  for (int i = 0; i < 30; ++i) {
-    const Eigen::Isometry3d pose = test::path_pose(i / 30.0);
-    pipeline.feed(with_wall(world.frame(static_cast<std::uint64_t>(i), i / 30.0, pose), world.camera(), pose));
+  for (const bool segmented : {false, true}) {
+    test::PointWorld world(find_camera("tum_fr3").value());
+    PipelineParts parts = parts_with_surface(world);
+    if (segmented) parts.segmenter = std::make_unique<RightThird>();
+    Pipeline pipeline(std::move(parts));
+    for (int i = 0; i < 30; ++i) {
+      const Eigen::Isometry3d pose = test::path_pose(i / 30.0);
+      pipeline.feed(with_wall(world.frame(static_cast<std::uint64_t>(i), i / 30.0, pose), world.camera(), pose));
+    }
+    pipeline.finish();
+    const std::size_t keyframes = pipeline.mapping_counts().keyframes_made;
+    const std::size_t frames = pipeline.surface()->fused_view_count() - keyframes;
+    EXPECT_LE(2 * frames, keyframes);
+    EXPECT_EQ(frames > 0, segmented);
   }
-  pipeline.finish();
-  EXPECT_GE(pipeline.surface()->fused_view_count(), pipeline.mapping_counts().keyframes_made + 2U);
 }
 
 TEST(PipelineSurface, HasEveryKeyframeAtItsFinalPose) {

@@ -8,6 +8,7 @@
 #include "holdfast/core/coarse_view.hpp"
 #include "holdfast/core/frame.hpp"
 #include "holdfast/surface/carving_views.hpp"
+#include "holdfast/surface/fused_frames.hpp"
 #include "holdfast/surface/mesh_files.hpp"
 #include "surface/solid_world.hpp"
 
@@ -110,6 +111,35 @@ TEST_F(SurfaceFieldTest, LeavesOutDynamicPixels) {
   EXPECT_EQ(area_in_front_of(mesh, 2.3), 0.0);
 }
 
+TEST_F(SurfaceFieldTest, LeavesOutWhatTwiceAsManyViewsCallDynamic) {
+  SolidWorld world;
+  world.has_ball = false;
+  world.has_wall = world.has_box = true;
+  const auto central_area = [&](int dynamic) {  // of the box, whose mask two views have missed
+    const auto poses = side_by_side(2 + dynamic, 0.02);
+    std::vector<KeptView> views = views_of(world, poses);
+    for (std::size_t i = 2; i < views.size(); ++i)
+      for (int y = 0; y < world.camera.height; ++y)
+        for (int x = 0; x < world.camera.width; ++x)
+          if (views[i].depth_at(x, y) < 2.3) views[i].depth.at<std::uint16_t>(y, x) |= KeptView::moves_bit;
+    SurfaceMap map(world.camera, settings_of_test());
+    map.update(views, poses, 0);
+    const auto area = [](TriangleMesh mesh) {
+      remove_triangles(mesh, [&](const auto& triangle) {
+        const Eigen::Vector3f& corner = mesh.vertices[triangle[0]].position;
+        return corner.z() > 1.9F || corner.head<2>().cwiseAbs().maxCoeff() > 0.15F;
+      });
+      return mesh.area();
+    };
+    const double with_votes = area(map.field().mesh());
+    map.update({views[0], views[1]}, {poses[0], poses[1]}, 0);
+    EXPECT_GT(area(map.field().mesh()), 0.08) << "votes of views that are taken out";
+    return with_votes;
+  };
+  EXPECT_GT(central_area(3), 0.08);
+  EXPECT_EQ(central_area(4), 0.0);
+}
+
 TEST_F(SurfaceFieldTest, RemovesWhatLeavesAndKeepsWhatArrives) {
   SolidWorld with, without;
   with.has_ball = without.has_ball = false;
@@ -193,23 +223,25 @@ TEST_F(SurfaceFieldTest, ClassesChangeNothingElse) {
 /// Coarse views of frames between keyframes.
 class CarvingTest : public SurfaceFieldTest {
  protected:
+  static Frame frame_of(const SolidWorld& world, const Eigen::Isometry3d& pose, std::uint64_t index) {
+    const CoarseSampler sampler(world.camera);
+    const KeptView view = world.view(pose, index);
+    cv::Mat depth;
+    view.depth.convertTo(depth, CV_32F, KeptView::depth_unit);
+    Frame frame;
+    frame.index = view.frame_index;
+    frame.timestamp = view.timestamp;
+    frame.camera = std::make_shared<Camera>(world.camera);
+    frame.coarse.grid = sampler.grid();
+    sampler.sample_depth(depth, frame.coarse);
+    frame.T_camera_world = pose.inverse();
+    return frame;
+  }
   /// Frames of a world from poses; `first` is the index of the first one.
   static void add_frames(const SolidWorld& world, const std::vector<Eigen::Isometry3d>& poses, std::uint64_t first,
                          CarvingViews& carving) {
-    const CoarseSampler sampler(world.camera);
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      const KeptView view = world.view(poses[i], first + i);
-      cv::Mat depth;
-      view.depth.convertTo(depth, CV_32F, KeptView::depth_unit);
-      Frame frame;
-      frame.index = view.frame_index;
-      frame.timestamp = view.timestamp;
-      frame.camera = std::make_shared<Camera>(world.camera);
-      frame.coarse.grid = sampler.grid();
-      sampler.sample_depth(depth, frame.coarse);
-      frame.T_camera_world = poses[i].inverse();
-      carving.add(frame, {}, Eigen::Isometry3d::Identity());
-    }
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      carving.add(frame_of(world, poses[i], first + i), {}, Eigen::Isometry3d::Identity());
   }
   /// A box before a wall in eight keyframes, then without the box in as many frames as there are poses.
   static TriangleMesh mesh_after_box(const std::vector<Eigen::Isometry3d>& later) {
@@ -245,6 +277,47 @@ TEST_F(CarvingTest, RemovesTheRemnantsOfWhatIsCarved) {
   std::vector<Eigen::Isometry3d> lower = side_by_side(6, 0.05);
   for (Eigen::Isometry3d& pose : lower) pose.linear() = Eigen::AngleAxisd(-0.31, Eigen::Vector3d::UnitX()).matrix();
   EXPECT_EQ(area_in_front_of(mesh_after_box(lower), 2.3), 0.0);
+}
+
+TEST_F(CarvingTest, FramesAreFusedWhereFewViewsObservedTheSurface) {
+  SolidWorld world;
+  world.has_ball = false;
+  world.has_wall = true;
+  const auto poses = side_by_side(8, 0.0);
+  const std::vector<KeptView> views = views_of(world, poses);
+  SurfaceMap map(world.camera, settings_of_test());
+  Frame frame = frame_of(world, poses[0], 8);
+  const std::vector<bool> left_out = {false, true};
+  map.update({views.begin(), views.end() - 1}, {poses.begin(), poses.end() - 1}, 0);
+  EXPECT_TRUE(FusedFrames::is_worthwhile(frame, map.field(), left_out)) << "seven views";
+  map.update(views, poses, 0);
+  EXPECT_FALSE(FusedFrames::is_worthwhile(frame, map.field(), left_out)) << "eight views";
+  frame.T_camera_world.translation().x() += 0.2;  // a twelfth of the image is new
+  EXPECT_TRUE(FusedFrames::is_worthwhile(frame, map.field(), left_out));
+  frame.coarse.mask.labels.assign(frame.coarse.depth.size(), 1);
+  EXPECT_FALSE(FusedFrames::is_worthwhile(frame, map.field(), left_out)) << "all is a person";
+  frame.coarse.mask.labels.clear();
+  frame.coarse.static_log_odds.assign(frame.coarse.depth.size(), -1.0F);
+  EXPECT_FALSE(FusedFrames::is_worthwhile(frame, map.field(), left_out)) << "all moves";
+}
+
+TEST_F(CarvingTest, FramesAreFusedAtTheirShareOfKeyframes) {
+  const SolidWorld world;
+  const ViewSampler sampler(world.camera, {.step = 1});
+  FusedFrames frames(sampler, 0.1, 0.5, 100);
+  frames.keyframe_kept(1.0);
+  EXPECT_FALSE(frames.is_due(2.0)) << "one keyframe";
+  frames.keyframe_kept(3.0);
+  EXPECT_FALSE(frames.is_due(3.05));
+  EXPECT_TRUE(frames.is_due(3.15));
+  frames.leave_out(3.15);
+  EXPECT_FALSE(frames.is_due(3.2));
+  EXPECT_TRUE(frames.is_due(3.3));
+  SensorFrame sensor_frame;
+  sensor_frame.colour = cv::Mat(world.camera.height, world.camera.width, CV_8UC3, cv::Scalar::all(0));
+  frames.add(sensor_frame, frame_of(world, Eigen::Isometry3d::Identity(), 33), {}, Eigen::Isometry3d::Identity(), {});
+  EXPECT_FALSE(frames.is_due(9.0)) << "two keyframes allow one frame";
+  EXPECT_EQ(frames.views().size(), 1U);
 }
 
 TEST_F(CarvingTest, KeepsViewsApartInTimeAndFewEnough) {

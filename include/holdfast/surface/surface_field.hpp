@@ -22,7 +22,8 @@ struct KeptView;
 ///
 /// Each view adds the distance of a voxel to the tangent plane of the surface in the voxel's pixel, positive in free
 /// space, with the weight cos^2(viewing angle) / depth_noise::alignment_deviation(depth)^2. Dynamic pixels have no
-/// weight. The sums are integers, so that a view can be taken out again exactly (Dai et al., BundleFusion, TOG 2017),
+/// weight, but votes: a surface that twice as many views called dynamic (amid dynamic pixels) as static is left out.
+/// The sums are integers, so that a view can be taken out again exactly (Dai et al., BundleFusion, TOG 2017),
 /// and the order of views has no influence on them.
 ///
 /// Free space: besides, a voxel has a balance of views that observed a surface at it (+1) and of views that observed
@@ -30,10 +31,10 @@ struct KeptView;
 /// free, whatever surface was observed there: surfaces that disappeared are removed after three views, and surfaces
 /// that appeared are kept. A view sees through a voxel if all depths of the 3x3 pixels around it are larger by the
 /// truncation and by 4 cm plus 1 % of the squared depth. The coarse depth of frames between keyframes (CarvingViews)
-/// counts in the balance, and not in the distances. The mesh leaves out remnants: parts that adjoin removed surface
+/// counts in the balance where it sees through. The mesh leaves out remnants: parts that adjoin removed surface
 /// with half of their vertices, and at which no view has looked since.
 ///
-/// Memory: 6.6 kB per block, and 4 kB of colour for each block that a surface crosses. Used by one thread.
+/// Memory: 7.1 kB per block, and 4 kB of colour for each block that a surface crosses. Used by one thread.
 class SurfaceField {
  public:
   /// Whether Holdfast was built with OpenVDB; without it the constructor throws Error.
@@ -82,6 +83,9 @@ class SurfaceField {
   /// Interpolates the field between voxels; empty where one of the eight around is not observed, or free. Not at the
   /// same time as changes() or a change, because it keeps the last place in the tree.
   std::optional<Sample> sample(const Eigen::Vector3f& point) const;
+
+  /// Number of points at whose nearest voxel fewer than `views` views observed a surface. See sample().
+  std::size_t count_unobserved(const std::vector<Eigen::Vector3f>& points, int views) const;
 
   std::size_t block_count() const;
   std::size_t memory_bytes() const;

@@ -20,9 +20,10 @@ struct SurfaceSettings {
   double smallest_part = 0.02;  ///< connected parts of the mesh with a smaller area are left out [m^2]
   /// Time between frames whose coarse depth carves free space, beside the keyframes [s]; 0 = keyframes alone carve.
   double carving_interval = 0.2;
-  /// Time between frames that are fused beside the keyframes, with the masks that were propagated to them [s]; 0 =
-  /// keyframes alone are fused.
-  double interval = 0.0;
+  /// Minimum time between frames that are fused beside the keyframes, with the masks that were propagated to them,
+  /// where few views observed the surface (FusedFrames) [s]; 0 = keyframes alone are fused.
+  double interval = 0.1;
+  double frames_per_keyframe = 0.5;  ///< maximum number of these frames for each keyframe, on average
   /// Time after which something that moved and stands still counts as part of the room [s]; 0 = never, if a filter
   /// keeps calling it moving because old keyframes looked through it. Classes of dense_map.classes never count.
   double resting_time = 0.0;
