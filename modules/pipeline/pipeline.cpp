@@ -297,10 +297,7 @@ void Pipeline::State::smooth_frames(const Trajectory& before) {
 void Pipeline::State::smooth_trajectory() {
   if (is_interrupted) return;
   const LockedMap locked(map, LockPriority::background);
-  flow.in_background([&](StageTimes& times) {
-    const StageTimer timer(times, "smooth trajectory");
-    tracker.smooth_trajectory(locked);
-  });
+  flow.in_background([&](StageTimes& times) { tracker.smooth_trajectory(locked, times); });
 }
 
 Pipeline::Pipeline(PipelineParts parts) : state_(std::make_unique<State>(checked(std::move(parts)))) {}

@@ -55,7 +55,7 @@ TEST(PathSmoothing, KeepsAFastPath) {
   for (std::size_t i = 150; i < 165; ++i)
     for (std::vector<Eigen::Vector3d>* positions : {&jolt.truth, &jolt.measured})
       (*positions)[i].x() += 0.02 * std::sin(8.0 * M_PI * interval * static_cast<double>(i - 150));
-  EXPECT_LT(jolt.error(jolt.smoothed()), 2.0 * jolt.error(jolt.measured));
+  EXPECT_LT(jolt.error(jolt.smoothed()), 3.0 * jolt.error(jolt.measured));
 }
 
 TEST(PathSmoothing, FollowsNeitherOutliersNorASecondOfWorseErrors) {

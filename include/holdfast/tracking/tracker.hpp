@@ -9,6 +9,7 @@
 #include "holdfast/core/frame_result.hpp"
 #include "holdfast/core/map.hpp"
 #include "holdfast/core/map_access.hpp"
+#include "holdfast/core/stage_times.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/tracking/bridge_smoothing.hpp"
 #include "holdfast/tracking/first_pose.hpp"
@@ -77,8 +78,10 @@ class Tracker {
   }
 
   /// Smooths the trajectory at the end of a run, if the settings say so (trajectory_smoothing.hpp).
-  void smooth_trajectory(const MapAccess& map) {
-    if (context_.settings.smooth_trajectory) holdfast::smooth_trajectory(context_.history, map.map());
+  void smooth_trajectory(const MapAccess& map, StageTimes& times) {
+    if (!context_.settings.smooth_trajectory) return;
+    const StageTimer timer(times, "smooth trajectory");
+    holdfast::smooth_trajectory(context_.history, map.map());
   }
 
   /// The last tracked frame, with features, matches and pose.
