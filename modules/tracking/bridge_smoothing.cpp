@@ -90,13 +90,16 @@ class BridgeSmoother {
       const double timestamp = trajectory_[i].timestamp;
       count += drifts_[i];
       if (keyframes_.contains(timestamp)) continue;
-      // Tracked frames stay, also where the keyframe moves that they are relative to.
-      history_.replace(
-          timestamp,
-          drifts_[i] != 0 ? solution.poses[i - window.begin].T_camera_world : trajectory_[i].T_world_camera.inverse(),
-          map_);
+      if (drifts_[i] != 0) history_.replace(timestamp, solution.poses[i - window.begin].T_camera_world, map_);
     }
     return count;
+  }
+
+  /// Tracked frames stay, also where the keyframe has moved that they are relative to.
+  void restore_tracked() {
+    for (std::size_t i = 0; i < trajectory_.size(); ++i)
+      if (drifts_[i] == 0 && !keyframes_.contains(trajectory_[i].timestamp))
+        history_.replace(trajectory_[i].timestamp, trajectory_[i].T_world_camera.inverse(), map_);
   }
 
  private:
@@ -140,10 +143,12 @@ void follow_keyframes(FrameHistory& history, const Map& map, const Trajectory& b
   const auto moved = [&](std::size_t keyframe, std::size_t i) {
     return after[keyframe].T_world_camera * before[keyframe].T_world_camera.inverse() * before[i].T_world_camera;
   };
+  constexpr double longest = 2.0;  // s
   std::optional<std::size_t> first;
   for (std::size_t second = 0; second < after.size(); ++second) {
     const auto pose = history.past_pose(after[second].timestamp, map);
     if (!pose || !pose->is_keyframe) continue;
+    if (first && after[second].timestamp - after[*first].timestamp > longest) first.reset();
     for (std::size_t i = first.value_or(second) + 1; i < second; ++i) {
       const double share =
           (after[i].timestamp - after[*first].timestamp) / (after[second].timestamp - after[*first].timestamp);
@@ -171,6 +176,7 @@ std::size_t smooth_bridges(FrameHistory& history, Map& map, const DriftingPoses&
     if (stop) break;
     if (summary.usable) count += smoother.write(window, problem);
   }
+  if (count > 0) smoother.restore_tracked();
   return count;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "holdfast/core/sensor.hpp"
 #include "holdfast/geometry/pose_problem.hpp"
 
 namespace holdfast {
@@ -14,7 +15,7 @@ void LateTracker::keep(const Frame& frame) {
   if (settings_.late_frames == 0) return;
   if (static_cast<int>(frames_.size()) >= settings_.late_frames) frames_.pop_front();
   frames_.push_back(frame);
-  frames_.back().static_probability.assign(frame.size(), 1.0F);
+  if (!features_have_depth(parts_.map.sensor())) frames_.back().static_probability.assign(frame.size(), 1.0F);
 }
 
 void LateTracker::finish(StageTimes& times) {

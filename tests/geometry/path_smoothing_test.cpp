@@ -58,6 +58,35 @@ TEST(PathSmoothing, KeepsAFastPath) {
   EXPECT_LT(jolt.error(jolt.smoothed()), 3.0 * jolt.error(jolt.measured));
 }
 
+TEST(PathSmoothing, KeepsTheMotionOfACameraThatStoodStillBefore) {
+  // Standing still is smooth and exact; what is true of it must not be asked of the motion.
+  for (const double share : {0.55, 0.8}) {
+    Random random(9);
+    Path path(600, 0.0);
+    double before = 0.0, after = 0.0;
+    const auto begin = static_cast<std::size_t>(share * 600.0);
+    for (std::size_t i = 0; i < path.truth.size(); ++i) {
+      const double time = i < begin ? 0.0 : interval * static_cast<double>(i - begin);
+      path.truth[i] = Eigen::Vector3d(1.0, 0.5, 0.0) * 0.15 * (1.0 - std::cos(4.0 * time));
+      const double deviation = i < begin ? 0.0003 : 0.003;
+      path.measured[i] = path.truth[i] + deviation * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
+    }
+    const std::vector<Eigen::Vector3d> smoothed = path.smoothed();
+    for (std::size_t i = begin; i < path.truth.size(); ++i) {
+      before += (path.measured[i] - path.truth[i]).squaredNorm();
+      after += (smoothed[i] - path.truth[i]).squaredNorm();
+    }
+    EXPECT_LT(after, 0.5 * before) << share;
+  }
+}
+
+TEST(PathSmoothing, StandsStampsThatAreNearlyEqual) {
+  Path path(300, 0.002);
+  path.times[100] = path.times[99] + 1e-6;
+  path.times[200] = path.times[199];
+  EXPECT_LT(path.error(path.smoothed()), 0.7 * path.error(path.measured));
+}
+
 TEST(PathSmoothing, FollowsNeitherOutliersNorASecondOfWorseErrors) {
   Path path(300, 0.001);
   Random random(3);

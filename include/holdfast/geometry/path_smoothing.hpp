@@ -16,12 +16,12 @@
 /// STEAM ahead: exactly sparse Gaussian process regression for batch continuous-time trajectory estimation on SE(3)",
 /// IROS 2015, equations 8 to 12 in a vector space).
 ///
-/// How much is smoothed is not given but found, from leave-one-out predictions of the measurements. The ratio of the
-/// prior's power spectral density to the variance of the measurements is the one with the smallest median error of
-/// prediction. Errors of a tracked camera grow for some frames and have outliers: the standard deviation of a
-/// measurement is in proportion to the smallest error of prediction around it, by any ratio, and its weight has
-/// Cauchy's robust factor. No position is moved by more than four times that error, so that a motion that its
-/// neighbours predict, however fast, is not taken for one.
+/// How much is smoothed is not given but found, from leave-one-out predictions of the measurements. Errors of a tracked
+/// camera grow for some frames and have outliers: the standard deviation of a measurement is in proportion to the
+/// smallest error of prediction around it, by any ratio of the prior's power spectral density to the variance of the
+/// measurements. With these weights, the ratio is the one with the smallest mean error of prediction, in deviations.
+/// Outliers have Cauchy's robust factor. No position is moved by more than four errors of prediction around it, so that
+/// a fast motion that its neighbours predict is kept.
 namespace holdfast::geometry {
 
 /// The smoothed positions of measurements at increasing times [s], in the order and unit of `measured`; the
@@ -40,7 +40,7 @@ class PathSystem {
     for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(times[i] - times[i - 1]);
     interval_ = upper_median(intervals);
     for (std::size_t i = 1; i < times.size(); ++i)
-      if (const double step = (times[i] - times[i - 1]) / interval_; step <= 3.5) link(i, step);
+      if (const double step = (times[i] - times[i - 1]) / interval_; step <= 3.5) link(i, std::max(step, 0.01));
   }
 
   /// Median interval of the times [s].
@@ -107,12 +107,6 @@ class PathSystem {
   std::vector<Step> steps_;
 };
 
-/// What leave-one-out prediction tells of measurements.
-struct PathErrors {
-  double ratio = 0.0;               ///< that predicts best
-  std::vector<double> unpredicted;  ///< root mean square of errors of prediction around each measurement
-};
-
 /// Takes the smaller of `least` and the root mean square of the errors within seven measurements to each side. Those at
 /// the ends of a path are extrapolated, and not counted; without any other it is 0.
 inline void take_least_mean(const PathSystem& system, const std::vector<double>& errors, std::vector<double>& least) {
@@ -127,23 +121,41 @@ inline void take_least_mean(const PathSystem& system, const std::vector<double>&
   }
 }
 
-inline PathErrors predict_measurements(PathSystem& system, std::span<const Eigen::Vector3d> measured) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  const std::size_t size = measured.size();
-  const std::vector<double> weights(size, 1.0);
-  std::vector<double> leverage(size), errors(size);
-  std::vector<Eigen::Vector3d> smoothed(size);
-  PathErrors result{0.0, std::vector<double>(size, infinity)};
-  double smallest = infinity;
+/// Errors of prediction of all measurements by the others, with this ratio and these weights.
+inline void predict_measurements(PathSystem& system, double ratio, std::span<const double> weights,
+                                 std::span<const Eigen::Vector3d> measured, std::vector<double>& errors) {
+  std::vector<double> leverage(measured.size());
+  std::vector<Eigen::Vector3d> smoothed(measured.size());
+  system.solve(ratio, weights, measured, smoothed, &leverage);
+  for (std::size_t i = 0; i < measured.size(); ++i)
+    errors[i] = (smoothed[i] - measured[i]).norm() / std::max(1e-6, 1.0 - leverage[i]);
+}
+
+/// The smallest root mean square of the errors of prediction around each measurement, by ratios from 10^-3 to 10^3.
+inline std::vector<double> unpredicted(PathSystem& system, std::span<const Eigen::Vector3d> measured) {
+  const std::vector<double> weights(measured.size(), 1.0);
+  std::vector<double> errors(measured.size()), least(measured.size(), std::numeric_limits<double>::infinity());
   for (double exponent = -3.0; exponent < 3.25; exponent += 0.5) {
-    const double ratio = std::pow(10.0, exponent);
-    system.solve(ratio, weights, measured, smoothed, &leverage);
-    for (std::size_t i = 0; i < size; ++i)
-      errors[i] = (smoothed[i] - measured[i]).norm() / std::max(1e-6, 1.0 - leverage[i]);
-    take_least_mean(system, errors, result.unpredicted);
-    if (const double error = upper_median(errors); error < smallest) result.ratio = ratio, smallest = error;
+    predict_measurements(system, std::pow(10.0, exponent), weights, measured, errors);
+    take_least_mean(system, errors, least);
   }
-  return result;
+  return least;
+}
+
+/// The ratio, up to 10^6, whose errors of prediction are the smallest in deviations, of which five count at most.
+inline double best_ratio(PathSystem& system, std::span<const double> weights, std::span<const double> deviations,
+                         std::span<const Eigen::Vector3d> measured) {
+  std::vector<double> errors(measured.size());
+  double best = 1.0, smallest = std::numeric_limits<double>::infinity();
+  for (double exponent = -3.0; exponent < 6.25; exponent += 0.5) {
+    const double ratio = std::pow(10.0, exponent);
+    predict_measurements(system, ratio, weights, measured, errors);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < measured.size(); ++i)
+      if (system.is_between(i)) sum += std::min(5.0, errors[i] / deviations[i]);
+    if (sum < smallest) best = ratio, smallest = sum;
+  }
+  return best;
 }
 
 }  // namespace detail
@@ -158,24 +170,25 @@ inline std::vector<Eigen::Vector3d> smooth_path(std::span<const double> times,
   if (size < 5) return smoothed;
   detail::PathSystem system(times);
   if (!(system.interval() > 0.0)) return smoothed;
-  const detail::PathErrors errors = detail::predict_measurements(system, measured);
-  std::vector<double> sorted = errors.unpredicted, deviations(size), weights(size);
+  const std::vector<double> unpredicted = detail::unpredicted(system, measured);
+  std::vector<double> sorted = unpredicted, deviations(size), weights(size);
   const double spread = upper_median(sorted);
-  if (!(spread > 0.0)) return smoothed;
+  if (!(spread > 0.0) || !std::isfinite(spread)) return smoothed;
   for (std::size_t i = 0; i < size; ++i) {
-    deviations[i] = std::max(errors.unpredicted[i], least_share * spread);
+    deviations[i] = std::max(unpredicted[i], least_share * spread);
     weights[i] = spread * spread / (deviations[i] * deviations[i]);
   }
-  system.solve(errors.ratio, weights, measured, smoothed, nullptr);
+  const double ratio = detail::best_ratio(system, weights, deviations, measured);
+  system.solve(ratio, weights, measured, smoothed, nullptr);
   for (std::size_t i = 3; i + 3 < size; ++i) {
     if (!system.is_between(i - 2) || !system.is_between(i + 2)) continue;
     const double scaled = (smoothed[i] - measured[i]).norm() / (cauchy * deviations[i]);
     weights[i] /= 1.0 + scaled * scaled;
   }
-  system.solve(errors.ratio, weights, measured, smoothed, nullptr);
+  system.solve(ratio, weights, measured, smoothed, nullptr);
   for (std::size_t i = 0; i < size; ++i) {
     const Eigen::Vector3d move = smoothed[i] - measured[i];
-    if (const double largest = largest_move * errors.unpredicted[i]; move.norm() > largest)
+    if (const double largest = largest_move * unpredicted[i]; move.norm() > largest)
       smoothed[i] = measured[i] + largest / move.norm() * move;
   }
   return smoothed;

@@ -19,7 +19,8 @@ struct DriftingPoses {
 
 /// Moves the frames between keyframes as an adjustment of the map has moved the keyframes before and after them:
 /// between both corrections, by time. Relative to their reference keyframe alone, frames keep its old surroundings, of
-/// another scale where the adjustment has corrected that. `before`: the trajectory of this history before the
+/// another scale where the adjustment has corrected that. Frames between keyframes more than two seconds apart stay as
+/// they are: they were tracked in a part of the map that is older. `before`: the trajectory of this history before the
 /// adjustment.
 void follow_keyframes(FrameHistory& history, const Map& map, const Trajectory& before);
 

@@ -14,9 +14,9 @@
 namespace holdfast {
 
 /// Locates frames without a pose in the finished map: those before a map began, and those of losses that backward
-/// tracking did not bridge because the map did not show their view yet. Features are kept, images are not. All features
-/// are static at first: the masks of such frames are the oldest ones, and the finished map has no people that they
-/// could match. One thread, within a MapAccess.
+/// tracking did not bridge because the map did not show their view yet. Features are kept, images are not. With one
+/// camera all of them count as static: the masks of such frames are often old, and the finished map has no people that
+/// they could match. One thread, within a MapAccess.
 ///
 /// A frame is matched with the frame located before it or, if none is near in time, by descriptors with the keyframes
 /// nearest in time (PnP with RANSAC); both are followed by the guided search in the local map. It is tried latest first
@@ -33,7 +33,7 @@ class LateTracker {
   };
   LateTracker(const TrackingSettings& settings, const Parts& parts) : settings_(settings), parts_(parts) {}
 
-  /// Keeps a copy of a frame whose features are weighted; only the last TrackingSettings::late_frames are kept.
+  /// Keeps a copy of a frame; only the last TrackingSettings::late_frames are kept.
   void keep(const Frame& frame);
   /// Locates the kept frames that have no pose yet, and forgets all. Adds the stage "late frames" if there are any.
   void finish(StageTimes& times);
