@@ -19,11 +19,11 @@ std::uint16_t to_units(float depth) {
   return units >= KeptView::depth_bits ? std::uint16_t{0} : static_cast<std::uint16_t>(std::lround(units));
 }
 
+}  // namespace
+
 bool is_left_out(std::uint8_t label, const std::vector<bool>& left_out) {
   return label == CellMask::unknown || (label < left_out.size() && left_out[label]);
 }
-
-}  // namespace
 
 std::size_t densest_view(const std::vector<KeptView>& views) {
   std::size_t least = views.size() - 1;

@@ -319,13 +319,16 @@ void KeyframeFlow::keep_for_surface(const SensorFrame& sensor_frame, const Frame
   if (carving_) carving_->keyframe_kept(frame.timestamp);
 }
 
+bool KeyframeFlow::lock_surface() const {
+  if (is_threaded()) return surface_mutex_.try_lock();
+  surface_mutex_.lock();
+  return true;
+}
+
 bool KeyframeFlow::wants_frame(const Frame& frame) {
   if (!fused_frames_ || !fused_frames_->is_due(frame.timestamp)) return false;
   // While a thread fuses, a later frame does as well.
-  if (!is_threaded())
-    surface_mutex_.lock();
-  else if (!surface_mutex_.try_lock())
-    return false;
+  if (!lock_surface()) return false;
   const AdoptedLock lock(surface_mutex_);
   if (FusedFrames::is_worthwhile(frame, surface_->field(), left_out_)) return true;
   fused_frames_->leave_out(frame.timestamp);
@@ -398,10 +401,7 @@ std::optional<Eigen::Isometry3d> KeyframeFlow::align_with_surface(const Frame& f
   if (!surface_) return std::nullopt;
   const StageTimer timer(times, "surface alignment");
   // While a thread fuses, other methods give the pose sooner.
-  if (!is_threaded())
-    surface_mutex_.lock();
-  else if (!surface_mutex_.try_lock())
-    return std::nullopt;
+  if (!lock_surface()) return std::nullopt;
   const AdoptedLock lock(surface_mutex_);
   // At the views' old poses it would hold the frame where the map was before.
   if (fused_corrections_ != corrections_.load()) return std::nullopt;

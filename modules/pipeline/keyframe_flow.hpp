@@ -161,6 +161,8 @@ class KeyframeFlow {
                         StageTimes& times) HOLDFAST_EXCLUDES(map_);
   /// Whether a frame between keyframes is to be fused into the surface.
   bool wants_frame(const Frame& frame) HOLDFAST_EXCLUDES(surface_mutex_);
+  /// Locks the surface; with threads only if none of them fuses now. Returns whether it is locked.
+  bool lock_surface() const HOLDFAST_TRY_ACQUIRE(true, surface_mutex_);
   /// What the surface is made of: kept views and those that only carve, by increasing frame index.
   std::vector<KeptView> views_of_surface() const;
   /// Adds a kept view to the surface, if there are both.

@@ -2,9 +2,6 @@
 #include "holdfast/surface/fused_frames.hpp"
 
 #include <algorithm>
-#include <cstdint>
-
-#include "holdfast/core/cell_mask.hpp"
 
 namespace holdfast {
 
@@ -17,9 +14,7 @@ std::vector<Eigen::Vector3f> static_points(const Frame& frame, int stride, doubl
   const Eigen::Isometry3d T_world_view = frame.T_view_world().inverse();
   const auto moves = [&](std::size_t cell) {
     if (!coarse.static_log_odds.empty() && coarse.static_log_odds[cell] < 0.0F) return true;
-    if (coarse.mask.labels.empty()) return false;
-    const std::uint8_t label = coarse.mask.labels[cell];
-    return label == CellMask::unknown || (label < left_out.size() && left_out[label]);
+    return !coarse.mask.labels.empty() && is_left_out(coarse.mask.labels[cell], left_out);
   };
   std::vector<Eigen::Vector3f> points;
   for (int row = stride / 2; row < coarse.grid.rows; row += stride)

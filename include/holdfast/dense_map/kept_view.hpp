@@ -44,6 +44,9 @@ struct KeptView {
   double depth_at(int x, int y) const { return (depth.at<std::uint16_t>(y, x) & depth_bits) * depth_unit; }
 };
 
+/// Whether a label is no part of the static scene: it is unknown (255), or a class of `left_out` (by label).
+bool is_left_out(std::uint8_t label, const std::vector<bool>& left_out);
+
 /// Position of the view without which the gap in time is smallest; neither the first nor the last of three or more.
 std::size_t densest_view(const std::vector<KeptView>& views);
 
