@@ -76,7 +76,7 @@ std::vector<KeyFrameId> LocalMapper::refine(KeyFrameId keyframe, StageTimes& tim
       counts_.points_moving += remove_moving_points(map_, settings_.moving_log_odds);
       counts_.points_removed += remove_weak_points(map_, keyframe, settings_, expects_masks_, recent_points_);
     }
-    triangulated = triangulate_points(map_, mutex_, keyframe, settings_.neighbours);
+    triangulated = triangulate_points(map_, mutex_, keyframe, settings_);
   }
   {
     const std::lock_guard lock(mutex_);

@@ -14,6 +14,13 @@ void MappingSettings::describe(ParameterTable<MappingSettings>& table) {
   table.add("neighbours", &S::neighbours, "number of covisible keyframes for triangulation and fusion of points")
       .range(1, 100);
   table
+      .add(
+          "far_parallax", &S::far_parallax,
+          "parallax above which features of one camera that find no match with 1.15 degrees are triangulated, too, for "
+          "cameras that turn more than they move; 1.15 = none of them")
+      .unit("deg")
+      .range(0.01, 1.15);
+  table
       .add("second_neighbours", &S::second_neighbours,
            "number of neighbours of each of these keyframes for fusion of points")
       .range(0, 100);

@@ -16,8 +16,11 @@
 namespace holdfast {
 
 /// Triangulates points from features without a point of the keyframe and of its covisible keyframes (Mur-Artal et al.
-/// 2015, section VI-C), up to `neighbours` of them. Returns the new points.
-std::vector<MapPointId> triangulate_points(Map& map, MapMutex& mutex, KeyFrameId keyframe, int neighbours);
+/// 2015, section VI-C), up to MappingSettings::neighbours of them. Those that are left over with one camera are
+/// triangulated with less parallax (MappingSettings::far_parallax), with the most distant keyframes first. Returns the
+/// new points.
+std::vector<MapPointId> triangulate_points(Map& map, MapMutex& mutex, KeyFrameId keyframe,
+                                           const MappingSettings& settings);
 
 /// Searches the points of the keyframe in its neighbours and theirs in the keyframe; adds observations, and fuses
 /// duplicate points. Returns the number of fused points.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <numbers>
 #include <optional>
 
 #include "holdfast/core/median.hpp"
@@ -22,6 +23,7 @@ struct TwoKeyframes {
   const Frame& frame;
   const Frame& neighbour;
   Eigen::Isometry3d T_frame_neighbour, T_neighbour_frame;
+  double max_parallax_cosine;  // of triangulated points
 };
 
 /// A match between their features.
@@ -43,13 +45,12 @@ double depth_cosine(const Frame& frame, std::uint32_t feature) {
 
 /// The point in the camera frame of the keyframe, by triangulation or by measured depth, whichever has more parallax.
 std::optional<Eigen::Vector3d> locate(const TwoKeyframes& views, const FeaturePair& pair) {
-  constexpr double max_parallax_cosine = geometry::TriangulationOptions{}.max_parallax_cosine;
   const Eigen::Vector3d ray = ray_of(views.frame, pair.in_frame);
   const Eigen::Vector3d other_ray = ray_of(views.neighbour, pair.in_neighbour);
   const double cosine = ray.normalized().dot((views.T_frame_neighbour.linear() * other_ray).normalized());
   const double frame_cosine = depth_cosine(views.frame, pair.in_frame);
   const double other_cosine = depth_cosine(views.neighbour, pair.in_neighbour);
-  if (cosine > 0.0 && cosine < std::min({frame_cosine, other_cosine, max_parallax_cosine}))
+  if (cosine > 0.0 && cosine < std::min({frame_cosine, other_cosine, views.max_parallax_cosine}))
     return geometry::triangulate_midpoint(Eigen::Vector3d::Zero(), ray, views.T_frame_neighbour.translation(),
                                           views.T_frame_neighbour.linear() * other_ray);
   if (views.frame.has_depth(pair.in_frame) && frame_cosine <= other_cosine)
@@ -111,12 +112,13 @@ std::vector<std::uint32_t> free_features(const Frame& frame) {
   return free;
 }
 
-void triangulate_with(Map& map, KeyFrameId id, KeyFrameId neighbour_id, std::vector<MapPointId>& points) {
+void triangulate_with(Map& map, KeyFrameId id, KeyFrameId neighbour_id, double max_parallax_cosine,
+                      std::vector<MapPointId>& points) {
   const std::uint64_t sequence = map.keyframe(id).sequence;
   const Frame& frame = map.keyframe(id).frame;
   const Frame& neighbour = map.keyframe(neighbour_id).frame;
   const Eigen::Isometry3d T_frame_neighbour = frame.T_camera_world * neighbour.T_world_camera();
-  const TwoKeyframes views{frame, neighbour, T_frame_neighbour, T_frame_neighbour.inverse()};
+  const TwoKeyframes views{frame, neighbour, T_frame_neighbour, T_frame_neighbour.inverse(), max_parallax_cosine};
   if (T_frame_neighbour.translation().norm() < shortest_baseline(map, neighbour)) return;
 
   std::vector<std::uint32_t> candidates = free_features(neighbour);
@@ -140,19 +142,40 @@ void triangulate_with(Map& map, KeyFrameId id, KeyFrameId neighbour_id, std::vec
   }
 }
 
+/// Sorts the neighbours by decreasing distance from the keyframe.
+void sort_farthest_first(const Map& map, KeyFrameId id, std::vector<KeyFrameId>& neighbours) {
+  const Eigen::Vector3d centre = map.keyframe(id).frame.T_world_camera().translation();
+  const auto distance = [&](KeyFrameId neighbour) {
+    return (map.keyframe(neighbour).frame.T_world_camera().translation() - centre).norm();
+  };
+  std::stable_sort(neighbours.begin(), neighbours.end(),
+                   [&](KeyFrameId a, KeyFrameId b) { return distance(a) > distance(b); });
+}
+
 }  // namespace
 
-std::vector<MapPointId> triangulate_points(Map& map, MapMutex& mutex, KeyFrameId id, int max_neighbours) {
+std::vector<MapPointId> triangulate_points(Map& map, MapMutex& mutex, KeyFrameId id, const MappingSettings& settings) {
+  constexpr double max_parallax_cosine = geometry::TriangulationOptions{}.max_parallax_cosine;
   std::vector<MapPointId> points;
   std::vector<KeyFrameId> neighbours;
+  const auto triangulate_with_all = [&](double cosine) {
+    for (const KeyFrameId neighbour : neighbours) {
+      const std::lock_guard lock(mutex);
+      triangulate_with(map, id, neighbour, cosine, points);
+    }
+  };
   {
     const std::lock_guard lock(mutex);
-    neighbours = map.best_covisible(id, max_neighbours);
+    neighbours = map.best_covisible(id, settings.neighbours);
   }
-  for (const KeyFrameId neighbour : neighbours) {
+  triangulate_with_all(max_parallax_cosine);
+  const double far_cosine = std::cos(settings.far_parallax * std::numbers::pi / 180.0);
+  if (features_have_depth(map.sensor()) || far_cosine <= max_parallax_cosine) return points;
+  {
     const std::lock_guard lock(mutex);
-    triangulate_with(map, id, neighbour, points);
+    sort_farthest_first(map, id, neighbours);
   }
+  triangulate_with_all(far_cosine);
   return points;
 }
 

@@ -62,6 +62,11 @@ class LocalMapperTest : public testing::Test {
       map.remove_keyframe(other);
     }
   }
+  static Frame without_far_depth(Frame frame) {
+    for (std::size_t i = 0; i < frame.size(); ++i)
+      if (frame.depth[i] > 2.5F) frame.depth[i] = 0.0F, frame.right_x[i] = std::numeric_limits<float>::quiet_NaN();
+    return frame;
+  }
   static Eigen::Isometry3d beside(double x) { return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0)); }
 
   test::PointWorld world;
@@ -115,11 +120,6 @@ TEST_F(LocalMapperTest, AKeyframeThatMatchesNothingHangsOnTheLastOne) {
 }
 
 TEST_F(LocalMapperTest, FeaturesWithoutDepthAreTriangulated) {
-  const auto without_far_depth = [](Frame frame) {
-    for (std::size_t i = 0; i < frame.size(); ++i)
-      if (frame.depth[i] > 2.5F) frame.depth[i] = 0.0F, frame.right_x[i] = std::numeric_limits<float>::quiet_NaN();
-    return frame;
-  };
   add_keyframe(without_far_depth(frame_at(beside(0))));
   Frame frame = frame_at(beside(0.3));
   match(frame, 1);
@@ -132,6 +132,24 @@ TEST_F(LocalMapperTest, FeaturesWithoutDepthAreTriangulated) {
     EXPECT_LT(point.position.z(), 4.4);  // where the world ends, with the noise of triangulation
   });
   EXPECT_GT(beyond, 50);
+}
+
+TEST_F(LocalMapperTest, OneCameraTriangulatesFarFeaturesWithLittleParallaxIfAsked) {
+  const auto triangulated = [&](double far_parallax) {
+    MappingSettings settings;
+    settings.far_parallax = far_parallax;
+    map = Map();
+    map.set_sensor(Sensor::mono);
+    mapper = std::make_unique<LocalMapper>(settings, close_depth_factor, map, mutex, *optimizer);
+    add_keyframe(without_far_depth(frame_at(beside(0))));
+    Frame frame = frame_at(beside(0.05));  // beyond 2.5 m, the parallax is below 1.15 degrees
+    match(frame, 1);
+    add_keyframe(without_far_depth(frame));
+    map.points().for_each([](MapPointId, const MapPoint& point) { EXPECT_LT(point.position.z(), 5.0); });
+    return mapper->counts().points_triangulated;
+  };
+  EXPECT_LT(triangulated(1.15), 5U);
+  EXPECT_GT(triangulated(0.1), 50U);
 }
 
 TEST_F(LocalMapperTest, APoseThatIsOffIsPulledBack) {

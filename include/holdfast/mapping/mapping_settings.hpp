@@ -14,6 +14,10 @@ struct MappingSettings {
   int minimum_depth_points = 100;
   /// Number of covisible keyframes for triangulation and fusion of points; 10 as in ORB-SLAM2 for RGB-D.
   int neighbours = 10;
+  /// Parallax [degrees] above which features of one camera that find no match with 1.15 degrees are triangulated, too.
+  /// A camera that turns more than it moves sees far points below 1.15 degrees, unless errors of match and pose make
+  /// them appear nearer than they are: with that limit alone, only these errors become points.
+  double far_parallax = 1.15;
   int second_neighbours = 5;  ///< number of neighbours of each neighbour that take part in fusion; 5 as in ORB-SLAM2
   /// Found ratio below which a new point is culled; 0.25 as in ORB-SLAM (Mur-Artal et al. 2015, section VI-B).
   double weak_found_ratio = 0.25;
