@@ -11,9 +11,10 @@ __asm__(
     "holdfast_unet_end:\n"
     ".popsection\n");
 
+// Hidden: through a table of addresses, as aarch64 has it for others, the linker takes both labels for the first.
 extern "C" {
-extern const std::uint8_t holdfast_unet_begin[];
-extern const std::uint8_t holdfast_unet_end[];
+[[gnu::visibility("hidden")]] extern const std::uint8_t holdfast_unet_begin[];
+[[gnu::visibility("hidden")]] extern const std::uint8_t holdfast_unet_end[];
 }
 
 namespace holdfast::unet_plugin {
