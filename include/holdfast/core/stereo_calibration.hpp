@@ -66,7 +66,7 @@ class StereoCalibration {
   Eigen::Matrix2d column_normal_ = Eigen::Matrix2d::Zero(), window_normal_ = Eigen::Matrix2d::Zero();
   Eigen::Vector2d column_gradient_ = Eigen::Vector2d::Zero(), window_gradient_ = Eigen::Vector2d::Zero();
   Eigen::Vector2d given_columns_;  // of the initial errors
-  Eigen::Matrix2d column_area_;  // mean square of c + q x^2 over the image is (c, q) column_area_ (c, q)^T
+  Eigen::Matrix2d column_area_;    // mean square of c + q x^2 over the image is (c, q) column_area_ (c, q)^T
 };
 
 }  // namespace holdfast
