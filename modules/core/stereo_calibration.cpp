@@ -49,6 +49,7 @@ Eigen::Matrix2d mean_square(const Camera& camera) {
 StereoCalibration::StereoCalibration(const Camera& camera, const PairErrors& errors, bool estimates)
     : camera_(camera), estimates_(estimates), column_area_(mean_square(camera)) {
   estimate_.errors = errors_of_frame_ = errors;
+  given_columns_ = columns_of(errors, camera.fx);
 }
 
 PairErrors StereoCalibration::errors() const {
@@ -122,12 +123,26 @@ void StereoCalibration::learn_columns(const ColumnEstimate& estimate, const Pair
   window_gradient_.setZero();
 }
 
+/// c and q of ColumnEstimate. A turn is the cause unless the difference to it is significant: q is determined several
+/// times worse than c, and a turn displaces both alike.
+ColumnEstimate StereoCalibration::solve_columns() const {
+  constexpr double significant = 13.8;  // standard deviations squared, as in use_columns()
+  // A pair that is used as rectified has errors of about a pixel.
+  const Eigen::Matrix2d normal = column_normal_ + window_normal_ + Eigen::Matrix2d::Identity();
+  const Eigen::Vector2d gradient = column_gradient_ + window_gradient_;
+  const Eigen::Matrix2d covariance = normal.inverse();
+  const Eigen::Vector2d found = covariance * gradient - given_columns_;
+  const double difference = found[1] - found[0];
+  const double variance = covariance(0, 0) + covariance(1, 1) - 2.0 * covariance(0, 1);
+  if (difference * difference > significant * variance) return {given_columns_ + found, normal};
+  const double turn = (gradient - normal * given_columns_).sum() / normal.sum();
+  return {given_columns_ + Eigen::Vector2d::Constant(turn), normal};
+}
+
 void StereoCalibration::use_columns() {
   constexpr double significant = 13.8;  // one in a thousand exceeds it by chance
-  // A pair that is used as rectified has errors of about a pixel.
-  const Eigen::Matrix2d prior = Eigen::Matrix2d::Identity();
-  const Eigen::Matrix2d normal = column_normal_ + window_normal_ + prior, covariance = normal.inverse();
-  const Eigen::Vector2d found = covariance * (column_gradient_ + window_gradient_);
+  const auto [found, normal] = solve_columns();
+  const Eigen::Matrix2d covariance = normal.inverse();
   PairErrors& errors = estimate_.errors;
   estimate_.shift = found[0];
   estimate_.shift_sigma = std::sqrt(covariance(0, 0));

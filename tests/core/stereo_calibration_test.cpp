@@ -153,6 +153,28 @@ TEST_F(StereoCalibrationTest, ErrorsThatMotionDoesNotDetermineAreNotUsed) {
   EXPECT_EQ(calibration.errors(), PairErrors());
 }
 
+/// The term of columns by x^2 is several times less certain than the constant one.
+TEST_F(StereoCalibrationTest, ATurnIsTheCauseOfColumnsUnlessMotionContradictsIt) {
+  const double turn = 0.001 * camera_.fx;  // px
+  const auto errors_after = [&](const Eigen::Vector2d& found, const PairErrors& given) {
+    ColumnEstimate estimate;
+    estimate.value = found;
+    estimate.information.diagonal() << 1.0 / (0.02 * 0.02), 1.0 / (0.06 * 0.06);
+    StereoCalibration calibration(camera_, given, true);
+    calibration.learn_columns(estimate, given, true);
+    return calibration.errors();
+  };
+  const PairErrors of_noise = errors_after({turn + 0.01, turn - 0.18}, {});
+  EXPECT_NEAR(of_noise.rotation.y(), 0.001, 3e-5);
+  EXPECT_NEAR(of_noise.column_offset, 0.0, 1e-9);
+  const PairErrors of_lens = errors_after({turn, turn + 0.8}, {});
+  EXPECT_NEAR(of_lens.column_offset, -0.8, 0.02);
+  // What is given is contradicted by motion only, too.
+  const PairErrors turned_later = errors_after({turn + 0.01, turn - 0.18}, of_lens);
+  EXPECT_NEAR(turned_later.rotation.y(), of_lens.rotation.y() + 0.001, 4e-5);
+  EXPECT_NEAR(turned_later.column_offset, of_lens.column_offset, 1e-9);
+}
+
 TEST_F(StereoCalibrationTest, FixedErrorsStay) {
   truth_.rotation = {0.001, -0.0008, 0.0012};
   PairErrors given;

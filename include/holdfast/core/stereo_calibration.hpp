@@ -24,7 +24,8 @@ struct ColumnEstimate {
 ///
 /// An error is corrected only if it is significant and displaces points by more than `minimum_shift`, so that a perfect
 /// calibration is not changed. The displacement of each row error is that at the image border; that of the two column
-/// errors is their joint root mean square over the image. Thread-safe.
+/// errors is their joint root mean square over the image. The displacement of columns is attributed to the rotation
+/// about y alone unless the motion significantly contradicts it. Thread-safe.
 class StereoCalibration {
  public:
   static constexpr double minimum_shift = 0.1;  ///< px; the matching of images has biases up to a few hundredths
@@ -49,6 +50,7 @@ class StereoCalibration {
 
  private:
   bool use_rows();
+  ColumnEstimate solve_columns() const;
   void use_columns();
 
   Camera camera_;
@@ -63,7 +65,8 @@ class StereoCalibration {
   // Normal equations of ColumnEstimate, of complete windows and of the present one.
   Eigen::Matrix2d column_normal_ = Eigen::Matrix2d::Zero(), window_normal_ = Eigen::Matrix2d::Zero();
   Eigen::Vector2d column_gradient_ = Eigen::Vector2d::Zero(), window_gradient_ = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d column_area_;  // mean square of c + q x^2 over the image is (c, q) column_area_ (c, q)^T
+  Eigen::Vector2d given_columns_;  // of the initial errors
+  Eigen::Matrix2d column_area_;    // mean square of c + q x^2 over the image is (c, q) column_area_ (c, q)^T
 };
 
 }  // namespace holdfast
