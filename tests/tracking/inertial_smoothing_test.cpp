@@ -150,8 +150,8 @@ TEST_F(InertialSmoothingTest, ErrorsOfTrackedFramesAreSmoothedByTheirOwnSize) {
   const double before[] = {error(0, first_bridged), error(last_bridged, frame_count)};
   const Eigen::Matrix4d keyframe = map.pose_of(map.keyframes_by_age()[1]).matrix();
   EXPECT_EQ(smooth(), 96U);
-  EXPECT_LT(error(0, first_bridged), 0.6 * before[0]);
-  EXPECT_LT(error(last_bridged, frame_count), 0.4 * before[1]);
+  EXPECT_LT(error(0, first_bridged), 0.4 * before[0]);
+  EXPECT_LT(error(last_bridged, frame_count), 0.15 * before[1]);
   EXPECT_EQ(map.pose_of(map.keyframes_by_age()[1]).matrix(), keyframe);
 }
 
