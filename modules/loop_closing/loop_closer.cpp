@@ -11,6 +11,11 @@
 
 namespace holdfast {
 
+namespace {
+/// Path for each second of a bridge [m/s]; drift_per_metre of it are 0.5 m: the odometry may follow a person.
+constexpr double unseen_metres = 25.0;
+}  // namespace
+
 const char* loop_verdict_name(LoopVerdict verdict) {
   switch (verdict) {
     case LoopVerdict::closed:
@@ -143,7 +148,7 @@ std::optional<LoopMeasurement> LoopCloser::check(CandidateReport& trial) {
     const std::lock_guard lock(map_mutex_);
     trial.joins_submaps = map_.keyframe(trial.keyframe).submap != map_.keyframe(trial.candidate).submap;
     if (!trial.joins_submaps) {
-      trial.path_length = path_length(map_, trial.keyframe, trial.candidate);
+      trial.path_length = path_length(map_, trial.keyframe, trial.candidate, is_inertial_ ? unseen_metres : 0.0);
       old_points = old_points_in_view(settings_, map_, trial.keyframe);
     }
   }

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plausibility.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <queue>
 #include <tuple>
 
 #include "holdfast/geometry/so3.hpp"
+#include "holdfast/interfaces/frame_observations.hpp"
 #include "holdfast/matching/frame_features.hpp"
 
 namespace holdfast {
 namespace {
 constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
+constexpr double longest_gap = 5.0;  // [s]
+constexpr int held_weight = 2 * minimum_shared_points;
 
 double turn_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   return geometry::log_so3(Eigen::Matrix3d(a.linear() * b.linear().transpose())).norm();
@@ -21,7 +26,7 @@ Eigen::Vector3d centre_of(const Eigen::Isometry3d& T_camera_world) {
 }
 }  // namespace
 
-double path_length(const Map& map, KeyFrameId from, KeyFrameId to) {
+double path_length(const Map& map, KeyFrameId from, KeyFrameId to, double metres_per_second) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   std::vector<double> lengths(map.keyframes().slot_count(), infinite);
   using Entry = std::pair<double, KeyFrameId>;  // ids break ties, so that the order is the same in every run
@@ -36,18 +41,21 @@ double path_length(const Map& map, KeyFrameId from, KeyFrameId to) {
     if (length > lengths[id.slot]) continue;
     const KeyFrame& keyframe = map.keyframe(id);
     const Eigen::Isometry3d& pose = keyframe.frame.T_camera_world;
-    const auto visit = [&](KeyFrameId next) {
-      const Eigen::Isometry3d& other = map.keyframe(next).frame.T_camera_world;
-      const double metres = (centre_of(pose) - centre_of(other)).norm();
-      const double next_length = length + metres + turn_between(pose, other);
+    const auto visit = [&](KeyFrameId next, bool is_held) {
+      const Frame& other = map.keyframe(next).frame;
+      const double metres = (centre_of(pose) - centre_of(other.T_camera_world)).norm();
+      double next_length = length + metres + turn_between(pose, other.T_camera_world);
+      if (!is_held)
+        next_length += metres_per_second * std::min(longest_gap, std::abs(other.timestamp - keyframe.frame.timestamp));
       if (next_length >= lengths[next.slot]) return;
       lengths[next.slot] = next_length;
       queue.emplace(next_length, next);
     };
-    for (const CovisibilityEdge& edge : keyframe.covisible) visit(edge.keyframe);
-    for (const KeyFrameId child : keyframe.children) visit(child);
-    for (const KeyFrameId other : keyframe.loop_edges) visit(other);
-    if (keyframe.parent.valid()) visit(keyframe.parent);
+    // A held edge of the spanning tree is one of covisibility as well, and then the shorter one.
+    for (const CovisibilityEdge& edge : keyframe.covisible) visit(edge.keyframe, edge.weight >= held_weight);
+    for (const KeyFrameId child : keyframe.children) visit(child, false);
+    for (const KeyFrameId other : keyframe.loop_edges) visit(other, true);
+    if (keyframe.parent.valid()) visit(keyframe.parent, false);
   }
   return infinite;
 }

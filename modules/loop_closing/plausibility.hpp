@@ -10,8 +10,9 @@ namespace holdfast {
 /// Length of the shortest path between two keyframes [m] in the graph of covisibility, spanning tree and loop edges.
 /// The length of an edge is the distance of its cameras plus one metre per radian between them, because rotation
 /// drifts, too. The shortest path and not the travelled one bounds the drift, because revisited places constrain the
-/// pose. Infinite without a path.
-double path_length(const Map& map, KeyFrameId from, KeyFrameId to);
+/// pose. Infinite without a path. An edge of fewer shared points than twice the minimum holds the camera by hardly a
+/// view, and is longer by `metres_per_second` for each second between its keyframes, up to 5 s.
+double path_length(const Map& map, KeyFrameId from, KeyFrameId to, double metres_per_second = 0.0);
 
 /// Translation and rotation between two poses of a camera.
 PoseChange pose_change(const Eigen::Isometry3d& T_camera_world_before, const Eigen::Isometry3d& T_camera_world_after);

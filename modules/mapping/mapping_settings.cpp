@@ -58,8 +58,8 @@ void MappingSettings::describe(ParameterTable<MappingSettings>& table) {
            "minimum number of shared points of two covisible keyframes")
       .range(1, 1000);
   table.add("inertia", &S::inertia,
-            "whether inertial measurements link the keyframes in adjustments of the whole map, after loops and at the "
-            "end of the run, and smooth bridged frames at its end; has an effect with tracking.inertia only");
+            "with tracking.inertia, whether inertial measurements link the keyframes in adjustments of the whole map, "
+            "after loops and at the end of the run, and smooth the frames between them at its end");
 }
 
 }  // namespace holdfast

@@ -43,6 +43,7 @@ class KeyframeFlow {
   void use_inertia(InertialHistory& history) {
     links_by_inertia_ = true;
     adjustment_.use_inertia(history);
+    closer_.use_inertia();
   }
   void start_threads();
   bool is_threaded() const { return mapping_.has_value(); }

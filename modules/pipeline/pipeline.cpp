@@ -291,7 +291,7 @@ void Pipeline::State::smooth_frames(const Trajectory& before) {
   if (adjusted && locked->inertia()) locked->set_inertia(adjusted);  // belongs to the poses, interrupted or not
   if (is_interrupted) return;
   if (!placed.empty()) tracker.follow_keyframes(locked, before);
-  tracker.smooth_bridges(locked, drifting, *inertia, *parts.optimizer, is_interrupted);
+  tracker.smooth_by_inertia(locked, drifting, *inertia, *parts.optimizer, is_interrupted);
 }
 
 void Pipeline::State::smooth_trajectory() {

@@ -19,15 +19,6 @@ void PipelineBuilder::check_effects() {
         origin_.place,
         "'surface.classes' has no effect without a segmenter, which gives pixels their classes; set 'segmenter', or "
         "remove 'surface.classes'");
-  if (parts_.localise_only && parts_.mapping.inertia)
-    suspect(origin_.place,
-            "'mapping.inertia' has no effect where the camera is only localised in a map, which stays as it is; "
-            "continue the map instead, or set mapping.inertia: false");
-  else if (parts_.mapping.inertia && !(parts_.tracking.inertia && parts_.imu))
-    suspect(
-        origin_.place,
-        "'mapping.inertia' has no effect without the estimates of tracking; set tracking.inertia, with a source that "
-        "has an IMU, or mapping.inertia: false");
   bool uses_masks = false;
   for (std::size_t i = 0; i < filters_.size(); ++i) {
     const Needs needs = parts_.filters[i].second->needs();

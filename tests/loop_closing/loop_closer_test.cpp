@@ -146,13 +146,37 @@ TEST_F(LoopCloserTest, ALoopLeavesOtherSubmapsWhereTheyAre) {
 }
 
 TEST_F(LoopCloserTest, LookAlikePlaceIsRefused) {
-  // The wall opposite to the beginning is a copy of it: everything but the way agrees.
-  test::RingWorld world;
-  world.add_wall(0, 0.5 * round_trip, 1250);
-  world.repeat_wall(0, 0.5 * round_trip, 0.5 * round_trip);
-  EXPECT_FALSE(walk(world, 0.05 * round_trip, 0.95 * round_trip, 54));
-  EXPECT_GT(closer->counts().of(LoopVerdict::implausible_correction), 3U);
-  EXPECT_EQ(closer->counts().of(LoopVerdict::closed), 0U);
+  for (const bool is_inertial : {false, true}) {
+    map.clear(), detector.clear(), make_closer();
+    if (is_inertial) closer->use_inertia();
+    // The wall opposite to the beginning is a copy of it: everything but the way agrees.
+    test::RingWorld world;
+    world.add_wall(0, 0.5 * round_trip, 1250);
+    world.repeat_wall(0, 0.5 * round_trip, 0.5 * round_trip);
+    EXPECT_FALSE(walk(world, 0.05 * round_trip, 0.95 * round_trip, 54));
+    EXPECT_GT(closer->counts().of(LoopVerdict::implausible_correction), 3U);
+    EXPECT_EQ(closer->counts().of(LoopVerdict::closed), 0U);
+  }
+}
+
+/// Without inertial measurements, tracking would have been lost, and have begun another submap.
+TEST_F(LoopCloserTest, DriftBehindAHiddenViewIsPlausibleWithInertia) {
+  const Eigen::Isometry3d mistake(Eigen::Translation3d(0.5, 0.1, 0.7));
+  for (const bool is_inertial : {false, true}) {
+    map.clear(), detector.clear(), make_closer();
+    if (is_inertial) closer->use_inertia();
+    test::RingWorld world(0.0);
+    world.add_wall(0, round_trip, 2500);
+    ASSERT_FALSE(walk(world, 0, 0.5 * round_trip, 30));
+    world.hide_view(mistake, 2.0);
+    const auto loop = walk(world, 0.5 * round_trip, 1.2 * round_trip, 42);
+    EXPECT_GT(error_before, 0.8);
+    ASSERT_EQ(loop.has_value(), is_inertial);
+    if (loop)
+      EXPECT_GT(loop->correction.metres, 0.8);
+    else
+      EXPECT_GT(closer->counts().of(LoopVerdict::implausible_correction), 3U);
+  }
 }
 
 TEST_F(LoopCloserTest, LookAlikePlaceIsRefusedWhereOldPointsConfirmThePose) {

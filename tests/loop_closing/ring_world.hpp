@@ -75,7 +75,7 @@ class RingWorld {
           geometry::orthonormalised((map.pose_of(last_).inverse() * T_last_this * mistake_).inverse());
       mistake_ = Eigen::Isometry3d::Identity();
     }
-    frame.timestamp = static_cast<double>(map.next_sequence());
+    frame.timestamp = hidden_seconds_ + static_cast<double>(map.next_sequence());
     constexpr std::uint64_t memory = 6;  // keyframes
     for (std::size_t i = 0; i < frame.size(); ++i) {
       const auto known = latest_.find(shown_[i]);
@@ -95,6 +95,8 @@ class RingWorld {
       latest_[shown_[i]] = {point, keyframe.sequence};
     }
     map.update_covisibility(id);
+    if (last_.valid() && map.keyframe(id).submap == map.keyframe(last_).submap && !map.keyframe(id).parent.valid())
+      map.set_parent(id, last_);
     last_ = id;
     truth_[id] = truth;
     return id;
@@ -105,6 +107,13 @@ class RingWorld {
     latest_.clear();
     mistake_ = mistake;
     submap_ = map.new_submap();
+  }
+
+  /// The view is hidden for some seconds: the next keyframe sees none of the points, and its pose is off by `mistake`.
+  void hide_view(const Eigen::Isometry3d& mistake, double seconds) {
+    latest_.clear();
+    mistake_ = mistake;
+    hidden_seconds_ += seconds;
   }
 
   /// Largest distance of a keyframe from where it truly is.
@@ -174,6 +183,7 @@ class RingWorld {
   Eigen::Isometry3d drift_;
   Eigen::Isometry3d mistake_ = Eigen::Isometry3d::Identity();
   std::uint32_t submap_ = 0;
+  double hidden_seconds_ = 0.0;
   std::vector<Eigen::Vector3d> points_;
   std::vector<Descriptor256> descriptors_;
   std::vector<std::size_t> shown_;  // of the last frame

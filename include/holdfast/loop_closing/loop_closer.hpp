@@ -54,6 +54,9 @@ class LoopCloser {
   /// Sets the full adjustment that a new loop invalidates; it is requested to stop before the map is corrected.
   void set_full_adjustment(FullAdjustment* adjustment) { adjustment_ = adjustment; }
 
+  /// The run has inertial measurements: views that people hide are bridged, where the drift grows with time.
+  void use_inertia() { is_inertial_ = true; }
+
   /// Searches for a loop at a keyframe, closes it, and adds the keyframe to the detector. Query and database use the
   /// descriptors of static features only (static_probability), so that the keyframe's own mask must have been applied
   /// before. For a detector with global descriptors they use Frame::image_descriptor, which must have been set. It must
@@ -80,6 +83,7 @@ class LoopCloser {
   Optimizer& optimizer_;
   const FeatureMatcher& matcher_;
   std::uint64_t seed_;
+  bool is_inertial_ = false;
   FullAdjustment* adjustment_ = nullptr;
   LoopCandidates candidates_;
   std::optional<PlaceWeights> weights_;  // for the labels of the map; set at the first keyframe

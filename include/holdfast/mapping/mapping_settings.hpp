@@ -33,9 +33,10 @@ struct MappingSettings {
   int bundle_final_iterations = 10;  ///< iterations after the removal of outliers; 10 as in ORB-SLAM2
   /// Minimum number of shared points of a covisibility edge, in local mapping and loop closing alike (Map).
   int covisibility_minimum = default_covisibility_minimum;
-  /// Whether inertial measurements link the keyframes in adjustments of the whole map, after loops and at the end of
-  /// the run, and smooth bridged frames at its end. Has an effect with TrackingSettings::inertia only.
-  bool inertia = false;
+  /// Where tracking uses inertial measurements (TrackingSettings::inertia): whether these link the keyframes in
+  /// adjustments of the whole map, after loops and at the end of the run, and smooth the frames between them at its
+  /// end.
+  bool inertia = true;
 
   static void describe(ParameterTable<MappingSettings>& table);
 };

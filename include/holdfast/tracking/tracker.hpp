@@ -11,10 +11,10 @@
 #include "holdfast/core/map_access.hpp"
 #include "holdfast/core/stage_times.hpp"
 #include "holdfast/core/trajectory.hpp"
-#include "holdfast/tracking/bridge_smoothing.hpp"
 #include "holdfast/tracking/first_pose.hpp"
 #include "holdfast/tracking/frame_tracker.hpp"
 #include "holdfast/tracking/health_judge.hpp"
+#include "holdfast/tracking/inertial_smoothing.hpp"
 #include "holdfast/tracking/keyframe_decision.hpp"
 #include "holdfast/tracking/loss_record.hpp"
 #include "holdfast/tracking/loss_recovery.hpp"
@@ -71,10 +71,10 @@ class Tracker {
   void follow_keyframes(const MapAccess& map, const Trajectory& before) {
     holdfast::follow_keyframes(context_.history, map.map(), before);
   }
-  /// Estimates the poses of these frames again by the map as it is now, at the end of a run (smooth_bridges()).
-  std::size_t smooth_bridges(const MapAccess& map, const DriftingPoses& drifting, const InertialHistory& inertia,
-                             Optimizer& optimizer, const std::atomic<bool>& stop) {
-    return holdfast::smooth_bridges(context_.history, map.map(), drifting, inertia, optimizer, stop);
+  /// Estimates the poses between keyframes again by the map as it is now, at the end of a run.
+  std::size_t smooth_by_inertia(const MapAccess& map, const DriftingPoses& drifting, const InertialHistory& inertia,
+                                Optimizer& optimizer, const std::atomic<bool>& stop) {
+    return holdfast::smooth_by_inertia(context_.history, map.map(), drifting, inertia, optimizer, stop);
   }
 
   /// Smooths the trajectory at the end of a run, if the settings say so (trajectory_smoothing.hpp).

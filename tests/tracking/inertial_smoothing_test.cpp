@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/tracking/bridge_smoothing.hpp"
+#include "holdfast/tracking/inertial_smoothing.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
+#include "holdfast/core/random.hpp"
 #include "holdfast/plugin/registry.hpp"
 
 extern "C" void holdfast_register_plugin_schur(holdfast::Registry&);
@@ -23,11 +25,11 @@ Eigen::Isometry3d pose_at(double time) {
 }
 Eigen::Vector3d force_at(double time) { return {-1.2 * std::sin(2.0 * time), -standard_gravity, 0.0}; }
 
-/// A history in which the bridged frames drift away by `drift` at the end of the bridge.
-class BridgeTest : public testing::Test {
+/// A history in which the bridged frames drift away by 0.15 m until the end of the bridge.
+class InertialSmoothingTest : public testing::Test {
  protected:
-  BridgeTest() {
-    inertia.set_estimates(estimates(), 0);
+  InertialSmoothingTest() {
+    inertia->set_estimates(estimates(), 0);
     for (int i = 0; i < frame_count; ++i) add_frame(i);
   }
   static MapInertia estimates() {
@@ -35,19 +37,21 @@ class BridgeTest : public testing::Test {
     result.gravity = {0.0, standard_gravity, 0.0};
     return result;
   }
-  void add_frame(int i) {
+  void add_frame(int i, bool lacks_measurements = false, bool drifts = false) {
     SensorFrame measured;
     measured.timestamp = frame_interval * i;
     for (int k = -9; k <= 1; ++k) {
       const double time = measured.timestamp + 0.005 * k;
       measured.imu.push_back({time, Eigen::Vector3d::Zero(), force_at(time)});
     }
-    inertia.add(measured);
+    if (lacks_measurements) measured.imu.clear();
+    inertia->add(measured);
     Frame frame;
     frame.timestamp = measured.timestamp;
     Eigen::Isometry3d T_world_camera = pose_at(frame.timestamp);
-    const bool is_bridged = i >= first_bridged && i <= last_bridged;
-    if (is_bridged) T_world_camera.translation().y() += 0.15 * (i - first_bridged) / (last_bridged - first_bridged);
+    const bool is_bridged = drifts || (i >= first_bridged && i <= last_bridged);
+    const int since = drifts ? 20 : i - first_bridged;
+    if (is_bridged) T_world_camera.translation().y() += 0.15 * since / (last_bridged - first_bridged);
     frame.T_camera_world = T_world_camera.inverse();
     history.add(frame, reference, map);
     if (is_bridged) drifting.frames.push_back(frame.timestamp);
@@ -66,7 +70,7 @@ class BridgeTest : public testing::Test {
     drifting.keyframes.push_back(frame.timestamp);
     return id;
   }
-  std::size_t smooth() { return smooth_bridges(history, map, drifting, inertia, *optimizer, stop); }
+  std::size_t smooth() { return smooth_by_inertia(history, map, drifting, *inertia, *optimizer, stop); }
   static Frame keyframe() {
     Frame frame;
     frame.x.resize(2), frame.map_points.resize(2);
@@ -85,7 +89,7 @@ class BridgeTest : public testing::Test {
   FrameHistory history;
   DriftingPoses drifting;
   std::atomic<bool> stop = false;
-  InertialHistory inertia{*find_imu("bmi055")};
+  std::optional<InertialHistory> inertia{*find_imu("bmi055")};
   std::unique_ptr<Optimizer> optimizer = [] {
     Registry registry;
     holdfast_register_plugin_schur(registry);
@@ -118,14 +122,41 @@ TEST(FollowKeyframes, FramesLieBetweenTheirKeyframesAsBefore) {
   }
 }
 
-TEST_F(BridgeTest, FramesOfABridgeFollowTheFramesOnBothSides) {
+TEST_F(InertialSmoothingTest, FramesOfABridgeFollowTheFramesOnBothSides) {
   EXPECT_NEAR(largest_error(), 0.15, 1e-6);
-  EXPECT_EQ(smooth(), 31U);
+  EXPECT_EQ(smooth(), 99U) << "all but the keyframe";
   EXPECT_LT(largest_error(), 0.005);
 }
 
+TEST_F(InertialSmoothingTest, ErrorsOfTrackedFramesAreSmoothedByTheirOwnSize) {
+  Random random(5);
+  const auto disturbed = [&](int i) { return i % 20 != 0 && (i < first_bridged || i > last_bridged); };
+  const auto error = [&](int begin, int end) {
+    const Trajectory poses = history.trajectory(map);
+    double sum = 0.0;
+    for (int i = begin; i < end; ++i)
+      if (disturbed(i))
+        sum += (poses[i].T_world_camera.translation() - pose_at(poses[i].timestamp).translation()).norm();
+    return sum;
+  };
+  for (int i = 0; i < frame_count; ++i) {
+    Eigen::Isometry3d T_world_camera = pose_at(frame_interval * i);
+    const double deviation = i < first_bridged ? 0.001 : 0.01;
+    const Eigen::Vector3d noise(random.normal(), random.normal(), random.normal());
+    if (disturbed(i)) T_world_camera.translation() += deviation * noise;
+    if (i < first_bridged || i > last_bridged) history.replace(frame_interval * i, T_world_camera.inverse(), map);
+    if (i > 0 && i % 20 == 0 && i != 60) make_keyframe(i), drifting.keyframes.clear();
+  }
+  const double before[] = {error(0, first_bridged), error(last_bridged, frame_count)};
+  const Eigen::Matrix4d keyframe = map.pose_of(map.keyframes_by_age()[1]).matrix();
+  EXPECT_EQ(smooth(), 96U);
+  EXPECT_LT(error(0, first_bridged), 0.4 * before[0]);
+  EXPECT_LT(error(last_bridged, frame_count), 0.15 * before[1]);
+  EXPECT_EQ(map.pose_of(map.keyframes_by_age()[1]).matrix(), keyframe);
+}
+
 /// As where no adjustment of the map follows the bridge.
-TEST_F(BridgeTest, KeyframesOfABridgeMoveWithTheirPoints) {
+TEST_F(InertialSmoothingTest, KeyframesOfABridgeMoveWithTheirPoints) {
   const KeyFrameId keyframe = make_keyframe(55);
   const Eigen::Vector3d seen(0.1, 0.2, 3.0);
   const MapPointId alone = map.add_point(map.pose_of(keyframe).inverse() * seen, 0);
@@ -134,35 +165,60 @@ TEST_F(BridgeTest, KeyframesOfABridgeMoveWithTheirPoints) {
   map.add_observation(shared, keyframe, 1);
   map.add_observation(shared, reference, 0);
   const Eigen::Vector3d before = map.point(shared).position;
-  EXPECT_EQ(smooth(), 31U);
+  EXPECT_EQ(smooth(), 99U);
   EXPECT_LT(largest_error(), 0.006);
   EXPECT_LT((map.pose_of(keyframe).inverse().translation() - pose_at(frame_interval * 55).translation()).norm(), 0.006);
   EXPECT_LT((map.pose_of(keyframe) * map.point(alone).position - seen).norm(), 1e-9);
   EXPECT_EQ(map.point(shared).position, before);
 }
 
-TEST_F(BridgeTest, AKeyframeThatAnAdjustmentPlacedHoldsTheBridge) {
+TEST_F(InertialSmoothingTest, AKeyframeThatAnAdjustmentPlacedHoldsTheBridge) {
   const KeyFrameId keyframe = make_keyframe(55);
   drifting.keyframes.clear();
   const Eigen::Matrix4d before = map.pose_of(keyframe).matrix();
-  EXPECT_EQ(smooth(), 30U);
+  EXPECT_EQ(smooth(), 98U);
   EXPECT_EQ(map.pose_of(keyframe).matrix(), before);
   EXPECT_GT(largest_error(), 0.05) << "it was not placed well here";
 }
 
-TEST_F(BridgeTest, StaysWithoutMeasurements) {
+TEST_F(InertialSmoothingTest, StaysWithoutMeasurements) {
   const InertialHistory nothing(*find_imu("bmi055"));
-  EXPECT_EQ(smooth_bridges(history, map, drifting, nothing, *optimizer, stop), 0U);
+  EXPECT_EQ(smooth_by_inertia(history, map, drifting, nothing, *optimizer, stop), 0U);
   EXPECT_NEAR(largest_error(), 0.15, 1e-6);
 }
 
-TEST_F(BridgeTest, StaysAfterAnInterruption) {
+/// A gap in the measurements ends a chain of frames, and not the smoothing: that on its other side begins anew.
+TEST_F(InertialSmoothingTest, FramesOnBothSidesOfAGapAreSmoothed) {
+  for (const int gap : {20, 55}) {
+    history.clear(), drifting = {};
+    inertia.emplace(*find_imu("bmi055"));
+    inertia->set_estimates(estimates(), 0);
+    for (int i = 0; i < frame_count; ++i) add_frame(i, i >= gap && i < gap + 5);
+    const Trajectory before = history.trajectory(map);
+    EXPECT_EQ(smooth(), gap == 20 ? 95U : 68U);
+    const Trajectory after = history.trajectory(map);
+    const Eigen::Vector3d moved = after[55].T_world_camera.translation() - before[55].T_world_camera.translation();
+    if (gap == 20)
+      EXPECT_LT(largest_error(), 0.005);
+    else
+      EXPECT_LT(moved.norm(), 1e-9) << "no tracked frame holds the other side of it";
+  }
+}
+
+/// A trajectory of several chains, each as long as one may be; the first cut lies within a bridge, but for that.
+TEST_F(InertialSmoothingTest, LongTrajectoriesAreSolvedInPieces) {
+  for (int i = frame_count; i < 940; ++i) add_frame(i, false, i >= 890 && i <= 920);
+  EXPECT_EQ(smooth(), 939U);
+  EXPECT_LT(largest_error(), 0.005);
+}
+
+TEST_F(InertialSmoothingTest, StaysAfterAnInterruption) {
   stop = true;
   EXPECT_EQ(smooth(), 0U);
   EXPECT_NEAR(largest_error(), 0.15, 1e-6);
 }
 
-TEST_F(BridgeTest, StaysWhereNoTrackedFrameFollows) {
+TEST_F(InertialSmoothingTest, StaysWhereNoTrackedFrameFollows) {
   for (const bool is_keyframe : {false, true}) {
     add_frame(frame_count + (is_keyframe ? 1 : 0));
     const double end = history.trajectory(map).back().timestamp;
@@ -177,10 +233,10 @@ TEST_F(BridgeTest, StaysWhereNoTrackedFrameFollows) {
 }
 
 /// A keyframe that drifts is no other side.
-TEST_F(BridgeTest, StaysWhereItEndsInADriftingKeyframe) {
+TEST_F(InertialSmoothingTest, StaysWhereItEndsInADriftingKeyframe) {
   for (int i = last_bridged + 1; i < frame_count - 1; ++i) drifting.frames.push_back(frame_interval * i);
   make_keyframe(frame_count - 1);
-  EXPECT_EQ(smooth(), 0U);
+  EXPECT_EQ(smooth(), 39U) << "the frames before it";
   EXPECT_NEAR(largest_error(), 0.15, 1e-6);
 }
 

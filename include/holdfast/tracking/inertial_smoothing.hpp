@@ -24,13 +24,14 @@ struct DriftingPoses {
 /// adjustment.
 void follow_keyframes(FrameHistory& history, const Map& map, const Trajectory& before);
 
-/// Estimates the poses of bridges again, from the frames on both sides of each as the map has them now: a
-/// fixed-interval smoother, whose problem has priors for the tracked frames within half a second of the bridge and
-/// inertial factors between all successive frames. What the map corrected behind the bridge is thereby spread over it
-/// by the uncertainty of the measurements. Drifting keyframes move with the points that no other keyframe observes. A
-/// bridge at the end of the history stays as it is. Returns the number of frames with a new pose. `stop`: from any
-/// thread; bridges that were not written yet stay.
-std::size_t smooth_bridges(FrameHistory& history, Map& map, const DriftingPoses& drifting,
-                           const InertialHistory& inertia, Optimizer& optimizer, const std::atomic<bool>& stop);
+/// Estimates the poses of frames between keyframes again, at the end of a run: a fixed-interval smoother (Forster et
+/// al. 2017, section VII; Campos et al. 2020), whose states are all frames that inertial measurements link. Tracked
+/// frames have their poses as priors, with deviations that a first solution tells; keyframes have priors of a third of
+/// these, and stay where they are. Frames that drift have none: what the map corrected behind a bridge is thereby
+/// spread over it by the uncertainty of the measurements. Drifting keyframes move with the points that no other
+/// keyframe observes. Where a link is missing, the chain of frames ends; a bridge at the end of a chain stays as it is.
+/// Returns the number of frames with a new pose. `stop`: from any thread; chains that were not solved yet stay.
+std::size_t smooth_by_inertia(FrameHistory& history, Map& map, const DriftingPoses& drifting,
+                              const InertialHistory& inertia, Optimizer& optimizer, const std::atomic<bool>& stop);
 
 }  // namespace holdfast

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/tracking/inertial_smoothing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "holdfast/core/median.hpp"
+#include "holdfast/geometry/se3.hpp"
+
+namespace holdfast {
+
+namespace {
+
+using Deviations = Eigen::Array2d;  // of a pose: position, rotation [rad]
+
+/// Of tracked frames, before they are estimated: [m], [rad].
+const Deviations first_deviations(0.003, 0.002);
+constexpr double least_share = 0.03;     // of these: smaller ones are those of data without noise
+constexpr double keyframe_share = 0.33;  // deviations of keyframes, which the adjustment placed, by those of frames
+constexpr std::size_t most_frames = 900, fewest_frames = 3;  // of a chain
+
+enum class Role : std::uint8_t { tracked, drifting, keyframe };
+
+/// Frames `begin` to `end` - 1 of a trajectory that inertial measurements link, tracked ones at both ends.
+struct Chain {
+  std::size_t begin = 0, end = 0;
+  std::vector<InertialHistory::Link> links;  // between indices from `begin` on
+};
+
+geometry::Matrix6d information_of(const Deviations& deviations) {
+  geometry::Vector6d information;
+  information.head<3>().setConstant(1.0 / (deviations[0] * deviations[0]));
+  information.tail<3>().setConstant(1.0 / (deviations[1] * deviations[1]));
+  return information.asDiagonal();
+}
+
+Deviations upper_medians(const std::vector<Deviations>& values) {
+  Deviations medians;
+  std::vector<double> column;
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    column.clear();
+    for (const Deviations& value : values) column.push_back(value[k]);
+    medians[k] = upper_median(column);
+  }
+  return medians;
+}
+
+class InertialSmoother {
+ public:
+  InertialSmoother(const FrameHistory& history, Map& map, const DriftingPoses& drifting, const InertialHistory& inertia)
+      : map_(map), inertia_(inertia), trajectory_(history.trajectory(map)), smoothed_(trajectory_) {
+    const std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
+    const std::vector<double> stamps = linkable_stamps(map, keyframes, inertia);
+    for (std::size_t i = 0; i < keyframes.size(); ++i)
+      if (!std::isnan(stamps[i])) keyframes_[stamps[i]] = keyframes[i];
+    const auto contains = [](const std::vector<double>& sorted, double stamp) {
+      return std::binary_search(sorted.begin(), sorted.end(), stamp);
+    };
+    for (const TimedPose& pose : trajectory_) {
+      const bool drifts = contains(drifting.frames, pose.timestamp) || contains(drifting.keyframes, pose.timestamp);
+      const Role placed = keyframes_.contains(pose.timestamp) ? Role::keyframe : Role::tracked;
+      roles_.push_back(drifts ? Role::drifting : placed);
+    }
+    if (const std::optional<MapInertia> estimates = inertia.estimates()) unit_ = estimates->scale;
+  }
+
+  /// The chains of the trajectory. Long ones are cut beside tracked frames, so that the cost is linear.
+  std::vector<Chain> find_chains() const {
+    std::vector<Chain> chains;
+    for (std::size_t begin = 0, end = 0; begin < trajectory_.size(); begin = end) {
+      end = std::min(begin + most_frames, trajectory_.size());
+      const std::size_t latest = end;
+      while (end < trajectory_.size() && end > begin && (drifts(end - 1) || drifts(end))) --end;
+      if (end == begin) end = latest;
+      add_chains(begin, end, chains);
+    }
+    return chains;
+  }
+
+  /// Solves a chain with the first deviations, and again with those that the solution leaves.
+  std::optional<BundleProblem> solve(const Chain& chain, Optimizer& optimizer, const std::atomic<bool>& stop) const {
+    BundleProblem problem = problem_of(chain);
+    if (!optimizer.optimize_bundle(problem, stop).usable || stop) return std::nullopt;
+    weight_anew(chain, problem);
+    if (!optimizer.optimize_bundle(problem, stop).usable || stop) return std::nullopt;
+    return problem;
+  }
+
+  /// Takes the poses of a solution over; returns the number of frames with a new one.
+  std::size_t take(const Chain& chain, const BundleProblem& solution) {
+    move_keyframes(chain, solution);
+    std::size_t count = 0;
+    for (std::size_t i = chain.begin; i < chain.end; ++i) {
+      if (roles_[i] == Role::keyframe) continue;
+      smoothed_[i].T_world_camera = solution.poses[i - chain.begin].T_camera_world.inverse();
+      ++count;
+    }
+    return count;
+  }
+
+  /// Writes all frames: where a keyframe has moved, those that are relative to it and were not smoothed stay.
+  void write(FrameHistory& history) const {
+    for (const TimedPose& pose : smoothed_)
+      if (!keyframes_.contains(pose.timestamp)) history.replace(pose.timestamp, pose.T_world_camera.inverse(), map_);
+  }
+
+ private:
+  bool drifts(std::size_t i) const { return roles_[i] == Role::drifting; }
+
+  void add_chains(std::size_t begin, std::size_t end, std::vector<Chain>& chains) const {
+    std::vector<double> timestamps;
+    for (std::size_t i = begin; i < end; ++i) timestamps.push_back(trajectory_[i].timestamp);
+    std::vector<InertialHistory::Link> links = inertia_.links(timestamps);
+    for (std::size_t first = 0, last = 0; first < links.size(); first = last) {
+      for (last = first + 1; last < links.size() && links[last].first == links[last - 1].second;) ++last;
+      Chain chain{begin + links[first].first, begin + links[last - 1].second + 1, {}};
+      while (chain.begin < chain.end && drifts(chain.begin)) ++chain.begin;
+      while (chain.begin < chain.end && drifts(chain.end - 1)) --chain.end;
+      if (chain.end - chain.begin < fewest_frames) continue;
+      for (std::size_t k = first; k < last; ++k) {
+        InertialHistory::Link& link = links[k];
+        if (begin + link.first < chain.begin || begin + link.second >= chain.end) continue;
+        link.first = begin + link.first - chain.begin, link.second = begin + link.second - chain.begin;
+        chain.links.push_back(std::move(link));
+      }
+      chains.push_back(std::move(chain));
+    }
+  }
+
+  BundleProblem problem_of(const Chain& chain) const {
+    const Deviations deviations(first_deviations[0] / unit_, first_deviations[1]);
+    BundleProblem problem;
+    problem.camera = map_.keyframe(map_.keyframes_by_age().front()).frame.camera.get();
+    for (std::size_t i = chain.begin; i < chain.end; ++i) {
+      const Eigen::Isometry3d T_camera_world = trajectory_[i].T_world_camera.inverse();
+      const auto pose = static_cast<std::uint32_t>(problem.poses.size());
+      problem.poses.push_back({T_camera_world, false});
+      if (drifts(i)) continue;
+      const double share = roles_[i] == Role::keyframe ? keyframe_share : 1.0;
+      problem.factors.pose_priors.push_back({pose, T_camera_world, information_of(share * deviations)});
+    }
+    add_inertial_factors(problem, chain.links, inertia_);
+    problem.robust_iterations = 0, problem.final_iterations = 50;  // no observation is an outlier
+    problem.function_tolerance = 1e-6;
+    return problem;
+  }
+
+  /// Deviations of tracked frames: the root mean square of what the solution changed within seven frames to each side,
+  /// since errors of tracking grow for some frames, and Cauchy's robust factor for outliers. The random walks and noise
+  /// of the measurements are known, so that the changes tell the errors of the poses.
+  void weight_anew(const Chain& chain, BundleProblem& problem) const {
+    std::vector<Deviations> changes(problem.poses.size(), Deviations::Zero()), of_frames;
+    for (const BundleFactors::PosePrior& prior : problem.factors.pose_priors) {
+      if (roles_[chain.begin + prior.pose] != Role::tracked) continue;
+      const geometry::Vector6d change =
+          geometry::log_se3(problem.poses[prior.pose].T_camera_world * prior.T_camera_world.inverse());
+      changes[prior.pose] = Deviations(change.head<3>().norm(), change.tail<3>().norm()) / std::sqrt(3.0);
+      of_frames.push_back(changes[prior.pose]);
+    }
+    if (of_frames.empty()) return;
+    const Deviations median = upper_medians(of_frames);
+    const Deviations least = least_share * Deviations(first_deviations[0] / unit_, first_deviations[1]);
+    for (BundleFactors::PosePrior& prior : problem.factors.pose_priors) {
+      Deviations deviations = 1.5 * keyframe_share * median;
+      if (roles_[chain.begin + prior.pose] == Role::tracked) {
+        deviations = mean_around(chain, prior.pose, changes).max(0.3 * median).max(least);
+        deviations *= (1.0 + (changes[prior.pose] / (2.0 * deviations)).square()).sqrt();
+      }
+      prior.information = information_of(deviations.max(least));
+    }
+  }
+
+  Deviations mean_around(const Chain& chain, std::size_t pose, const std::vector<Deviations>& changes) const {
+    constexpr std::size_t reach = 7;
+    Deviations sum = Deviations::Zero();
+    double count = 0.0;
+    for (std::size_t k = pose < reach ? 0 : pose - reach; k < std::min(changes.size(), pose + reach + 1); ++k)
+      if (roles_[chain.begin + k] == Role::tracked) sum += changes[k].square(), count += 1.0;
+    return (sum / count).sqrt();
+  }
+
+  /// Moves drifting keyframes, with the points that they alone observe.
+  void move_keyframes(const Chain& chain, const BundleProblem& solution) {
+    std::map<KeyFrameId, Eigen::Isometry3d> motions;  // T_world_world, from old to new
+    for (std::size_t i = chain.begin; i < chain.end; ++i) {
+      const auto found = keyframes_.find(trajectory_[i].timestamp);
+      if (!drifts(i) || found == keyframes_.end()) continue;
+      Eigen::Isometry3d& pose = map_.keyframe(found->second).frame.T_camera_world;
+      const Eigen::Isometry3d& moved = solution.poses[i - chain.begin].T_camera_world;
+      motions[found->second] = moved.inverse() * pose;
+      pose = moved;
+    }
+    if (motions.empty()) return;
+    for (const MapPointId id : map_.points().ids()) {
+      MapPoint& point = map_.point(id);
+      const auto motion = motions.find(point.reference_keyframe);
+      const auto moves = [&](const Observation& seen) { return motions.contains(seen.keyframe); };
+      if (motion == motions.end() || !std::all_of(point.observations.begin(), point.observations.end(), moves))
+        continue;
+      point.position = motion->second * point.position;
+      point.viewing_direction = motion->second.linear() * point.viewing_direction;
+    }
+    map_.invalidate_copies();
+  }
+
+  Map& map_;
+  const InertialHistory& inertia_;
+  const Trajectory trajectory_;             // before
+  Trajectory smoothed_;                     // as far as chains were solved
+  std::vector<Role> roles_;                 // by frame of the trajectory
+  std::map<double, KeyFrameId> keyframes_;  // by time stamp
+  double unit_ = 1.0;                       // of the map [m]
+};
+
+}  // namespace
+
+void follow_keyframes(FrameHistory& history, const Map& map, const Trajectory& before) {
+  const Trajectory after = history.trajectory(map);
+  if (after.size() != before.size()) return;
+  const auto moved = [&](std::size_t keyframe, std::size_t i) {
+    return after[keyframe].T_world_camera * before[keyframe].T_world_camera.inverse() * before[i].T_world_camera;
+  };
+  constexpr double longest = 2.0;  // s
+  std::optional<std::size_t> first;
+  for (std::size_t second = 0; second < after.size(); ++second) {
+    const auto pose = history.past_pose(after[second].timestamp, map);
+    if (!pose || !pose->is_keyframe) continue;
+    if (first && after[second].timestamp - after[*first].timestamp > longest) first.reset();
+    for (std::size_t i = first.value_or(second) + 1; i < second; ++i) {
+      const double share =
+          (after[i].timestamp - after[*first].timestamp) / (after[second].timestamp - after[*first].timestamp);
+      const Eigen::Isometry3d a = moved(*first, i), b = moved(second, i);
+      const Eigen::Quaterniond rotation = Eigen::Quaterniond(a.linear()).slerp(share, Eigen::Quaterniond(b.linear()));
+      Eigen::Isometry3d T_world_camera(rotation);
+      T_world_camera.translation() = (1.0 - share) * a.translation() + share * b.translation();
+      history.replace(after[i].timestamp, T_world_camera.inverse(), map);
+    }
+    first = second;
+  }
+}
+
+std::size_t smooth_by_inertia(FrameHistory& history, Map& map, const DriftingPoses& drifting,
+                              const InertialHistory& inertia, Optimizer& optimizer, const std::atomic<bool>& stop) {
+  if (map.keyframes().size() == 0 || history.main_submap(map) != inertia.submap()) return 0;
+  InertialSmoother smoother(history, map, drifting, inertia);
+  std::size_t count = 0;
+  for (const Chain& chain : smoother.find_chains()) {
+    const std::optional<BundleProblem> solution = smoother.solve(chain, optimizer, stop);
+    if (stop) break;
+    if (solution) count += smoother.take(chain, *solution);
+  }
+  if (count > 0) smoother.write(history);
+  return count;
+}
+
+}  // namespace holdfast
