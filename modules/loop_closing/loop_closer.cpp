@@ -13,7 +13,13 @@ namespace holdfast {
 
 namespace {
 /// Path for each second of a bridge [m/s]; drift_per_metre of it are 0.5 m: the odometry may follow a person.
-constexpr double unseen_metres = 25.0;
+constexpr double unseen_speed = 25.0;
+constexpr double longest_unseen = 5.0 * unseen_speed;  // [m], of the whole path
+
+/// Length that a path may be given for views that hardly hold the camera [m].
+double unseen_length(const Map& map, KeyFrameId from, KeyFrameId to, double length) {
+  return std::min(longest_unseen, path_length(map, from, to, unseen_speed) - length);
+}
 }  // namespace
 
 const char* loop_verdict_name(LoopVerdict verdict) {
@@ -144,17 +150,21 @@ std::optional<LoopMeasurement> LoopCloser::check(CandidateReport& trial) {
   if (checked.verdict != LoopVerdict::closed) return std::nullopt;
 
   PlacePoints old_points;
+  double unseen = 0.0;
   {
     const std::lock_guard lock(map_mutex_);
     trial.joins_submaps = map_.keyframe(trial.keyframe).submap != map_.keyframe(trial.candidate).submap;
     if (!trial.joins_submaps) {
-      trial.path_length = path_length(map_, trial.keyframe, trial.candidate, is_inertial_ ? unseen_metres : 0.0);
+      trial.path_length = path_length(map_, trial.keyframe, trial.candidate);
+      // The unit of one camera's map is not the metre.
+      if (is_inertial_ && features_have_depth(map_.sensor()))
+        unseen = unseen_length(map_, trial.keyframe, trial.candidate, trial.path_length);
       old_points = old_points_in_view(settings_, map_, trial.keyframe);
     }
   }
   trial.correction = pose_change(frame->T_camera_world, checked.T_camera_world);
   trial.scale = checked.scale;
-  const PoseChange bound = drift_bound(settings_, trial.path_length, located.scale_is_free);
+  const PoseChange bound = drift_bound(settings_, trial.path_length + unseen, located.scale_is_free);
   const bool scale_is_plausible = std::abs(std::log(checked.scale)) <= std::log(settings_.largest_scale_drift);
   if (trial.joins_submaps)
     trial.verdict = LoopVerdict::closed;  // the pose of one submap relative to the other was a guess

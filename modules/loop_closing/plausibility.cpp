@@ -51,7 +51,7 @@ double path_length(const Map& map, KeyFrameId from, KeyFrameId to, double metres
       lengths[next.slot] = next_length;
       queue.emplace(next_length, next);
     };
-    // A held edge of the spanning tree is one of covisibility as well, and then the shorter one.
+    // An edge of the spanning tree that is held is one of covisibility as well, unless these need more shared points.
     for (const CovisibilityEdge& edge : keyframe.covisible) visit(edge.keyframe, edge.weight >= held_weight);
     for (const KeyFrameId child : keyframe.children) visit(child, false);
     for (const KeyFrameId other : keyframe.loop_edges) visit(other, true);

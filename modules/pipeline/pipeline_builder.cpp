@@ -436,6 +436,7 @@ void PipelineBuilder::make_modules() {
 /// Adjustments with inertial measurements need an optimizer for them.
 void PipelineBuilder::check_factors() {
   if (!parts_.optimizer || !parts_.imu || !parts_.tracking.inertia || !parts_.mapping.inertia) return;
+  if (parts_.localise_only) return;  // the map stays as it is
   if (parts_.optimizer->supports(FactorKind::inertial) && parts_.optimizer->supports(FactorKind::prior)) return;
   add_diagnostic(optimizer_->place,
                  "'mapping.inertia' needs an optimizer that solves problems with inertial factors, "

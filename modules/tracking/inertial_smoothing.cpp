@@ -20,8 +20,12 @@ using Deviations = Eigen::Array2d;  // of a pose: position, rotation [rad]
 
 /// Of tracked frames, before they are estimated: [m], [rad].
 const Deviations first_deviations(0.003, 0.002);
-constexpr double least_share = 0.03;     // of these: smaller ones are those of data without noise
-constexpr double keyframe_share = 0.33;  // deviations of keyframes, which the adjustment placed, by those of frames
+constexpr double least_share = 0.03;           // of these: smaller ones are those of data without noise
+constexpr double keyframe_share = 0.33;        // of the first ones: keyframes, which the adjustment placed
+constexpr double keyframe_median_share = 0.5;  // of the median of those of frames
+/// Deviations of the measurements by those of their noise: a mounting that is a degree wrong, scale factors or a time
+/// offset are no white noise, and act for a second or more.
+constexpr double model_factor = 3.0;
 constexpr std::size_t most_frames = 900, fewest_frames = 3;  // of a chain
 
 enum class Role : std::uint8_t { tracked, drifting, keyframe };
@@ -32,10 +36,12 @@ struct Chain {
   std::vector<InertialHistory::Link> links;  // between indices from `begin` on
 };
 
+/// Of a prior, relative to measurements whose deviations are those of their noise.
 geometry::Matrix6d information_of(const Deviations& deviations) {
+  const Deviations values = (model_factor / deviations).square();
   geometry::Vector6d information;
-  information.head<3>().setConstant(1.0 / (deviations[0] * deviations[0]));
-  information.tail<3>().setConstant(1.0 / (deviations[1] * deviations[1]));
+  information.head<3>().setConstant(values[0]);
+  information.tail<3>().setConstant(values[1]);
   return information.asDiagonal();
 }
 
@@ -86,12 +92,12 @@ class InertialSmoother {
   std::optional<BundleProblem> solve(const Chain& chain, Optimizer& optimizer, const std::atomic<bool>& stop) const {
     BundleProblem problem = problem_of(chain);
     if (!optimizer.optimize_bundle(problem, stop).usable || stop) return std::nullopt;
-    weight_anew(chain, problem);
+    reweight(chain, problem);
     if (!optimizer.optimize_bundle(problem, stop).usable || stop) return std::nullopt;
     return problem;
   }
 
-  /// Takes the poses of a solution over; returns the number of frames with a new one.
+  /// Adopts the poses of a solution; returns the number of frames with a new one.
   std::size_t take(const Chain& chain, const BundleProblem& solution) {
     move_keyframes(chain, solution);
     std::size_t count = 0;
@@ -145,43 +151,51 @@ class InertialSmoother {
       problem.factors.pose_priors.push_back({pose, T_camera_world, information_of(share * deviations)});
     }
     add_inertial_factors(problem, chain.links, inertia_);
+    for (BundleFactors::MotionPrior& prior : problem.factors.motion_priors)
+      prior.information *= model_factor * model_factor;
     problem.robust_iterations = 0, problem.final_iterations = 50;  // no observation is an outlier
     problem.function_tolerance = 1e-6;
     return problem;
   }
 
-  /// Deviations of tracked frames: the root mean square of what the solution changed within seven frames to each side,
-  /// since errors of tracking grow for some frames, and Cauchy's robust factor for outliers. The random walks and noise
-  /// of the measurements are known, so that the changes tell the errors of the poses.
-  void weight_anew(const Chain& chain, BundleProblem& problem) const {
-    std::vector<Deviations> changes(problem.poses.size(), Deviations::Zero()), of_frames;
-    for (const BundleFactors::PosePrior& prior : problem.factors.pose_priors) {
-      if (roles_[chain.begin + prior.pose] != Role::tracked) continue;
-      const geometry::Vector6d change =
-          geometry::log_se3(problem.poses[prior.pose].T_camera_world * prior.T_camera_world.inverse());
-      changes[prior.pose] = Deviations(change.head<3>().norm(), change.tail<3>().norm()) / std::sqrt(3.0);
-      of_frames.push_back(changes[prior.pose]);
+  /// Deviations of tracked frames: the root mean square, within seven frames to each side, of what the solution changed
+  /// beside their mean, with Cauchy's robust factor for outliers. The mean does not count: errors of tracking grow for
+  /// some frames, but a slow change may be one of the measurements as well, which must not take the weight of poses.
+  void reweight(const Chain& chain, BundleProblem& problem) const {
+    std::vector<geometry::Vector6d> moved(problem.poses.size(), geometry::Vector6d::Zero());
+    for (const BundleFactors::PosePrior& prior : problem.factors.pose_priors)
+      moved[prior.pose] = geometry::log_se3(problem.poses[prior.pose].T_camera_world * prior.T_camera_world.inverse());
+    std::vector<Deviations> changes(moved.size(), Deviations::Zero()), of_frames;
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+      if (roles_[chain.begin + i] != Role::tracked) continue;
+      const geometry::Vector6d change = moved[i] - mean_around(chain, i, moved, geometry::Vector6d::Zero().eval());
+      changes[i] = Deviations(change.head<3>().norm(), change.tail<3>().norm()) / std::sqrt(3.0);
+      of_frames.push_back(changes[i]);
     }
     if (of_frames.empty()) return;
+    std::vector<Deviations> squares;
+    for (const Deviations& change : changes) squares.push_back(change.square());
     const Deviations median = upper_medians(of_frames);
     const Deviations least = least_share * Deviations(first_deviations[0] / unit_, first_deviations[1]);
     for (BundleFactors::PosePrior& prior : problem.factors.pose_priors) {
-      Deviations deviations = 1.5 * keyframe_share * median;
+      Deviations deviations = keyframe_median_share * median;
       if (roles_[chain.begin + prior.pose] == Role::tracked) {
-        deviations = mean_around(chain, prior.pose, changes).max(0.3 * median).max(least);
+        deviations = mean_around(chain, prior.pose, squares, Deviations::Zero().eval()).sqrt();
+        deviations = deviations.max(0.3 * median).max(least);
         deviations *= (1.0 + (changes[prior.pose] / (2.0 * deviations)).square()).sqrt();
       }
       prior.information = information_of(deviations.max(least));
     }
   }
 
-  Deviations mean_around(const Chain& chain, std::size_t pose, const std::vector<Deviations>& changes) const {
+  /// Of the tracked frames within seven frames to each side.
+  template <class Value>
+  Value mean_around(const Chain& chain, std::size_t pose, const std::vector<Value>& values, Value sum) const {
     constexpr std::size_t reach = 7;
-    Deviations sum = Deviations::Zero();
     double count = 0.0;
-    for (std::size_t k = pose < reach ? 0 : pose - reach; k < std::min(changes.size(), pose + reach + 1); ++k)
-      if (roles_[chain.begin + k] == Role::tracked) sum += changes[k].square(), count += 1.0;
-    return (sum / count).sqrt();
+    for (std::size_t k = pose < reach ? 0 : pose - reach; k < std::min(values.size(), pose + reach + 1); ++k)
+      if (roles_[chain.begin + k] == Role::tracked) sum += values[k], count += 1.0;
+    return sum / count;
   }
 
   /// Moves drifting keyframes, with the points that they alone observe.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "holdfast/core/random.hpp"
@@ -42,7 +43,8 @@ class InertialSmoothingTest : public testing::Test {
     measured.timestamp = frame_interval * i;
     for (int k = -9; k <= 1; ++k) {
       const double time = measured.timestamp + 0.005 * k;
-      measured.imu.push_back({time, Eigen::Vector3d::Zero(), force_at(time)});
+      const double wrong = unmodelled * std::sin(std::numbers::pi / 2.0 * time);
+      measured.imu.push_back({time, Eigen::Vector3d::Zero(), force_at(time) + wrong * Eigen::Vector3d::UnitX()});
     }
     if (lacks_measurements) measured.imu.clear();
     inertia->add(measured);
@@ -84,6 +86,7 @@ class InertialSmoothingTest : public testing::Test {
     return largest;
   }
 
+  double unmodelled = 0.0;  // acceleration that measurements show and the camera has not [m/s^2]
   Map map;
   KeyFrameId reference = map.add_keyframe(keyframe());
   FrameHistory history;
@@ -153,6 +156,31 @@ TEST_F(InertialSmoothingTest, ErrorsOfTrackedFramesAreSmoothedByTheirOwnSize) {
   EXPECT_LT(error(0, first_bridged), 0.4 * before[0]);
   EXPECT_LT(error(last_bridged, frame_count), 0.15 * before[1]);
   EXPECT_EQ(map.pose_of(map.keyframes_by_age()[1]).matrix(), keyframe);
+}
+
+/// As by an error of the mounting while the camera tilts slowly.
+TEST_F(InertialSmoothingTest, SlowErrorsOfTheMeasurementsDoNotTakeTheWeightOfPoses) {
+  unmodelled = 0.5;
+  inertia.emplace(*find_imu("bmi055"));
+  inertia->set_estimates(estimates(), 0);
+  history = FrameHistory();
+  drifting.frames.clear();
+  Random random(5);
+  for (int i = frame_count; i < 7 * frame_count; ++i) {
+    add_frame(i);
+    Eigen::Isometry3d T_world_camera = pose_at(frame_interval * i);
+    T_world_camera.translation() += 0.003 * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
+    history.replace(frame_interval * i, T_world_camera.inverse(), map);
+  }
+  const auto error = [&] {
+    double sum = 0.0;
+    for (const TimedPose& pose : history.trajectory(map))
+      sum += (pose.T_world_camera.translation() - pose_at(pose.timestamp).translation()).squaredNorm();
+    return std::sqrt(sum);
+  };
+  const double before = error();
+  EXPECT_GT(smooth(), 590U);
+  EXPECT_LT(error(), before);
 }
 
 /// As where no adjustment of the map follows the bridge.
