@@ -37,14 +37,15 @@ Chain chain_of(std::size_t poses, Random& random) {
   return chain;
 }
 
-/// Adds random values to each pair of the structure, in both orders, and to the diagonal; returns the dense matrix.
+/// Adds random values to most pairs of the structure, as when observations were left out, and to the diagonal; returns
+/// the dense matrix.
 Eigen::MatrixXd fill(const Chain& chain, BlockCholesky& cholesky, Random& random) {
   std::vector<Eigen::Index> first(1, 0);
   for (const int size : chain.sizes) first.push_back(first.back() + size);
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(first.back(), first.back());
   cholesky.set_zero();
   for (const auto& [row, column] : chain.pairs) {
-    if (row == column) continue;
+    if (row == column || random.uniform() < 0.2) continue;
     const Eigen::MatrixXd values =
         Eigen::MatrixXd::NullaryExpr(chain.sizes[row], chain.sizes[column], [&] { return random.normal(); });
     cholesky.add(row, column, values);

@@ -23,7 +23,8 @@ class BlockCholesky {
   void finish_structure();
 
   void set_zero();
-  /// Adds values to a block of the structure; of blocks of the diagonal only the lower triangle is read.
+  /// Adds values to a block of the structure; blocks without any are zero. Of blocks of the diagonal only the lower
+  /// triangle is read.
   void add(std::size_t row, std::size_t column, const Eigen::Ref<const Eigen::MatrixXd>& values);
   /// Replaces the values by their factor. False if the matrix is not positive definite: set_zero() is next.
   bool factorise();
