@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Time of motion-only adjustment and of local bundle adjustment, on synthetic problems of the size that tracking and
-// local mapping pose.
+// Time of motion-only adjustment, of local bundle adjustment and of the adjustment of whole maps, on synthetic
+// problems.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "geometry/synthetic.hpp"
 #include "holdfast/geometry/pose_problem.hpp"
+#include "holdfast/geometry/preintegration.hpp"
 #include "optimizers/both_optimizers.hpp"
 
 namespace holdfast {
@@ -53,6 +55,43 @@ void bundle_sizes(benchmark::internal::Benchmark* each) {
 }
 BENCHMARK_CAPTURE(optimize_bundle, ceres, std::string("ceres"))->Apply(bundle_sizes);
 BENCHMARK_CAPTURE(optimize_bundle, schur, std::string("schur"))->Apply(bundle_sizes);
+
+/// Links successive poses, 0.2 s apart, by preintegrated measurements that fit their rotations.
+void add_inertial_factors(const std::vector<Eigen::Isometry3d>& poses, BundleProblem& problem) {
+  constexpr double interval = 0.01;
+  constexpr int steps = 20;
+  BundleFactors& factors = problem.factors;
+  for (std::uint32_t i = 0; i < poses.size(); ++i) factors.motions.push_back({.pose = i, .bias = {}});
+  for (std::uint32_t i = 1; i < poses.size(); ++i) {
+    const Eigen::Matrix3d turn = poses[i - 1].linear() * poses[i].linear().transpose();
+    const Eigen::Vector3d rate = geometry::log_so3(turn) / (interval * steps);
+    geometry::Preintegration measured(ImuNoise{});
+    for (int k = 0; k < steps; ++k) measured.integrate(rate, -(poses[i - 1].linear() * factors.gravity), interval);
+    factors.inertial.push_back({i - 1, i, measured});
+  }
+}
+
+/// Time per iteration of an adjustment of a whole map of `poses` keyframes, with inertial factors and without them.
+void optimize_map(benchmark::State& state, bool with_inertia) {
+  const Camera camera = synthetic::camera();
+  const auto poses = static_cast<int>(state.range(0));
+  synthetic::BundleCase original = synthetic::bundle_case(camera, 1, poses - 1, 40 * poses, 60, 1.0, 0.03, 1);
+  original.problem.robust_iterations = original.problem.final_iterations = 5;
+  original.problem.function_tolerance = 1e-15;
+  if (with_inertia) add_inertial_factors(original.poses, original.problem);
+  const auto optimizer = make_optimizer("schur");
+  const std::atomic<bool> stop = false;
+  BundleSummary summary;
+  for (auto _ : state) {
+    BundleProblem problem = original.problem;
+    summary = optimizer->optimize_bundle(problem, stop);
+  }
+  state.counters["iterations"] = summary.iterations;
+  state.counters["per_iteration"] = benchmark::Counter(
+      summary.iterations, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK_CAPTURE(optimize_map, visual, false)->Arg(40)->Arg(160)->Arg(640)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(optimize_map, inertial, true)->Arg(40)->Arg(160)->Arg(640)->Unit(benchmark::kMillisecond);
 
 /// How long an adjustment goes on after it was asked to stop, at moments spread over its whole time; the counters are
 /// in milliseconds. Arguments as above.

@@ -107,6 +107,9 @@ std::vector<std::uint8_t> find_island_holders(const Map& map, const Neighbours& 
   return holds;
 }
 
+/// Of the solution that sorts weak ties, whose deviations are centimetres: the one with the right ties begins there.
+constexpr double sorting_tolerance = 1e-5;
+
 /// Calls function(index) for 0 ... count - 1 and releases the map's lock after every 1000 calls.
 template <class Function>
 void in_portions(MapMutex& mutex, std::size_t count, Function&& function) {
@@ -258,8 +261,10 @@ void FullAdjustment::solve() {
 BundleSummary FullAdjustment::solve_with_inertia() {
   WeakTies ties;
   if (const std::optional<MapInertia> estimates = inertia_->estimates()) ties.take_out(problem_, cluster_, *estimates);
+  if (ties.empty()) return optimizer_.optimize_bundle(problem_, stop_);
+  problem_.function_tolerance = std::max(settings_.full_tolerance, sorting_tolerance);
   const BundleSummary first = optimizer_.optimize_bundle(problem_, stop_);
-  if (ties.empty()) return first;
+  problem_.function_tolerance = settings_.full_tolerance;
   if (!first.usable || stop_) {
     ties.put_back_all(problem_);
     return first;

@@ -154,6 +154,7 @@ class OnlyOnce final : public Optimizer {
  public:
   BundleSummary optimize_bundle(BundleProblem& problem, const std::atomic<bool>& stop) override {
     ++calls;
+    tolerances.push_back(problem.function_tolerance);
     if (calls > 1) return {};
     const BundleSummary summary = optimizer_->optimize_bundle(problem, stop);
     last = problem.poses.back().T_camera_world;
@@ -164,6 +165,7 @@ class OnlyOnce final : public Optimizer {
   GraphSummary optimize_pose_graph(PoseGraphProblem&) override { return {}; }
 
   int calls = 0, outliers = 0;
+  std::vector<double> tolerances;  ///< by call
   Eigen::Isometry3d last;
   std::size_t observations = 0;
 
@@ -197,6 +199,8 @@ TEST_F(FullAdjustmentTest, TheSolutionWithoutTiesStaysIfThatWithThemFails) {
   EXPECT_TRUE(summary.applied);
   ASSERT_EQ(once.calls, 2) << "with ties, and none without inertia";
   EXPECT_LT(once.observations, static_cast<std::size_t>(summary.observations));
+  EXPECT_GE(once.tolerances[0], 100.0 * LoopClosingSettings{}.full_tolerance) << "it only sorts ties";
+  EXPECT_EQ(once.tolerances[1], LoopClosingSettings{}.full_tolerance);
   EXPECT_TRUE(map.pose_of(last).isApprox(once.last, 1e-12));
 }
 

@@ -15,17 +15,43 @@ bool FactorSystem::begin(const BundleProblem& problem, std::span<const std::uint
   if (!evaluation_->is_finite()) return false;
   states_ = moved_states_ = evaluation_->states();
   free_poses_.assign(free_poses.begin(), free_poses.end());
-  column_of_pose_.assign(problem.poses.size(), -1);
+  sizes_.clear(), first_of_block_.clear();
   size_ = 0;
-  const auto next = [this](int count) { return std::exchange(size_, size_ + count); };
-  for (const std::uint32_t pose : free_poses_) column_of_pose_[pose] = next(6);
-  column_of_motion_.assign(states_.motions.size(), -1);
+  const auto next = [this](int size) {
+    first_of_block_.push_back(std::exchange(size_, size_ + size));
+    sizes_.push_back(size);
+    return static_cast<int>(sizes_.size()) - 1;
+  };
+  block_of_pose_.assign(problem.poses.size(), -1);
+  for (const std::uint32_t pose : free_poses_) block_of_pose_[pose] = next(6);
+  block_of_motion_.assign(states_.motions.size(), -1);
   for (std::size_t i = 0; i < states_.motions.size(); ++i)
-    if (evaluation_->motion_moves(i)) column_of_motion_[i] = next(9);
-  const std::array<bool, 3> world_moves = evaluation_->world_moves();
-  for (std::size_t i = 0; i < 3; ++i) column_of_world_[i] = world_moves[i] ? next(1) : -1;
-  analyzed_ = false;
+    if (evaluation_->motion_moves(i)) block_of_motion_[i] = next(9);
+  world_moves_ = evaluation_->world_moves();
+  if (const auto count = std::count(world_moves_.begin(), world_moves_.end(), true)) next(static_cast<int>(count));
+  terms_.clear();
+  for (const FactorEvaluation::Factor& factor : evaluation_->factors()) terms_.push_back(term_of(factor));
+  analyzed_ = linearised_ = false;
   return true;
+}
+
+FactorSystem::Term FactorSystem::term_of(const FactorEvaluation::Factor& factor) const {
+  Term term;
+  Eigen::Index width = 0;
+  const auto add = [&](int block) {
+    if (block < 0) return;
+    const auto number = static_cast<std::size_t>(block);
+    term.blocks.push_back({number, width, first_of_block_[number], sizes_[number]});
+    width += sizes_[number];
+  };
+  for (const std::uint32_t pose : factor.poses)
+    if (pose != FactorEvaluation::none) add(block_of_pose_[pose]);
+  for (const std::uint32_t motion : factor.motions)
+    if (motion != FactorEvaluation::none) add(block_of_motion_[motion]);
+  if (factor.has_world && std::count(world_moves_.begin(), world_moves_.end(), true) > 0)
+    add(static_cast<int>(sizes_.size()) - 1);
+  term.hessian.resize(width, width);
+  return term;
 }
 
 void FactorSystem::take_poses(const double* poses, FactorEvaluation::States& states) const {
@@ -44,70 +70,81 @@ double FactorSystem::moved_cost(const double* poses) {
   return evaluation_->cost(moved_states_);
 }
 
-FactorSystem::Columns FactorSystem::columns_of(const FactorEvaluation::Factor& factor, const FactorError& error) const {
-  Columns result;
-  const auto add = [&](int column, const auto& derivative) {
-    if (column < 0) return;
-    result.derivative.middleCols(result.count, derivative.cols()) = derivative;
-    for (int k = 0; k < derivative.cols(); ++k) result.column[static_cast<std::size_t>(result.count++)] = column + k;
+Eigen::MatrixXd FactorSystem::derivative_of(const FactorEvaluation::Factor& factor, const FactorError& error) const {
+  Eigen::Matrix<double, 15, 33> derivative;
+  Eigen::Index width = 0;
+  const auto add = [&](bool moves, const auto& block) {
+    if (!moves) return;
+    derivative.middleCols(width, block.cols()) = block;
+    width += block.cols();
   };
   for (std::size_t i = 0; i < 2; ++i)
-    if (factor.poses[i] != FactorEvaluation::none) add(column_of_pose_[factor.poses[i]], error.by_pose[i]);
+    if (factor.poses[i] != FactorEvaluation::none) add(block_of_pose_[factor.poses[i]] >= 0, error.by_pose[i]);
   for (std::size_t i = 0; i < 2; ++i)
-    if (factor.motions[i] != FactorEvaluation::none) add(column_of_motion_[factor.motions[i]], error.by_motion[i]);
+    if (factor.motions[i] != FactorEvaluation::none) add(block_of_motion_[factor.motions[i]] >= 0, error.by_motion[i]);
   if (factor.has_world)
-    for (std::size_t i = 0; i < 3; ++i) add(column_of_world_[i], error.by_world.col(static_cast<Eigen::Index>(i)));
-  return result;
+    for (std::size_t i = 0; i < 3; ++i) add(world_moves_[i], error.by_world.col(static_cast<Eigen::Index>(i)));
+  return derivative.topLeftCorner(factor.rows, width);
 }
 
 void FactorSystem::linearise(const double* poses) {
+  if (std::exchange(linearised_, true)) return;
   take_poses(poses, states_);
-  factor_entries_.clear();
   gradient_.setZero(size_);
   diagonal_.setZero(size_);
   FactorError error;
-  for (const FactorEvaluation::Factor& factor : evaluation_->factors()) {
+  for (std::size_t i = 0; i < terms_.size(); ++i) {
+    const FactorEvaluation::Factor& factor = evaluation_->factors()[i];
     evaluation_->evaluate(factor, states_, true, error);
-    const Columns columns = columns_of(factor, error);
-    const auto derivative = columns.derivative.topLeftCorner(factor.rows, columns.count);
-    const Eigen::MatrixXd hessian = derivative.transpose() * derivative;
+    const Eigen::MatrixXd derivative = derivative_of(factor, error);
+    Term& term = terms_[i];
+    term.hessian.noalias() = derivative.transpose() * derivative;
     const Eigen::VectorXd gradient = derivative.transpose() * error.residual.head(factor.rows);
-    for (int a = 0; a < columns.count; ++a) {
-      const int column = columns.column[static_cast<std::size_t>(a)];
-      gradient_[column] += gradient[a];
-      diagonal_[column] += hessian(a, a);
-      for (int b = 0; b < columns.count; ++b) {
-        const int row = columns.column[static_cast<std::size_t>(b)];
-        if (row >= column) factor_entries_.emplace_back(row, column, hessian(b, a));
-      }
+    for (const Term::Block& block : term.blocks) {
+      gradient_.segment(block.first, block.size) += gradient.segment(block.begin, block.size);
+      diagonal_.segment(block.first, block.size) += term.hessian.diagonal().segment(block.begin, block.size);
     }
   }
 }
 
-bool FactorSystem::solve(BlockSystem& visual, double damping, Eigen::VectorXd& steps, double& predicted_decrease) {
-  entries_ = factor_entries_;
-  visual.for_each_block([this](std::size_t row, std::size_t column, const double* block) {
-    for (std::size_t c = 0; c < 6; ++c)
-      for (std::size_t r = row == column ? c : 0; r < 6; ++r)
-        entries_.emplace_back(static_cast<int>(6 * row + r), static_cast<int>(6 * column + c), block[6 * c + r]);
-  });
-  const auto poses = static_cast<int>(6 * free_poses_.size());
-  Eigen::VectorXd solution(size_), extra = Eigen::VectorXd::Zero(size_);
-  for (int i = poses; i < size_; ++i) {
-    extra[i] = damping * std::clamp(diagonal_[i], 1e-6, 1e32);
-    entries_.emplace_back(i, i, extra[i]);
-  }
-  matrix_.resize(size_, size_);
-  matrix_.setFromTriplets(entries_.begin(), entries_.end());
-  if (!analyzed_) factorisation_.analyzePattern(matrix_);
+void FactorSystem::analyse(const BlockSystem& visual) {
+  cholesky_.begin_structure(sizes_);
+  visual.for_each_block(
+      [this](std::size_t row, std::size_t column, const double*) { cholesky_.add_block(row, column); });
+  for (const Term& term : terms_)
+    for (const Term::Block& row : term.blocks)
+      for (const Term::Block& column : term.blocks) cholesky_.add_block(row.number, column.number);
+  cholesky_.finish_structure();
   analyzed_ = true;
-  factorisation_.factorize(matrix_);
-  if (factorisation_.info() != Eigen::Success || !(factorisation_.vectorD().array() > 0.0).all()) return false;
+}
+
+void FactorSystem::fill(const BlockSystem& visual, const Eigen::VectorXd& extra) {
+  cholesky_.set_zero();
+  visual.for_each_block([this](std::size_t row, std::size_t column, const double* block) {
+    cholesky_.add(row, column, Eigen::Map<const Eigen::Matrix<double, 6, 6>>(block));
+  });
+  for (const Term& term : terms_)
+    for (const Term::Block& row : term.blocks)
+      for (const Term::Block& column : term.blocks)
+        if (row.number >= column.number)
+          cholesky_.add(row.number, column.number, term.hessian.block(row.begin, column.begin, row.size, column.size));
+  for (std::size_t i = free_poses_.size(); i < sizes_.size(); ++i)
+    cholesky_.add(i, i, Eigen::MatrixXd(extra.segment(first_of_block_[i], sizes_[i]).asDiagonal()));
+}
+
+bool FactorSystem::solve(const BlockSystem& visual, double damping, Eigen::VectorXd& steps,
+                         double& predicted_decrease) {
+  const auto poses = static_cast<Eigen::Index>(6 * free_poses_.size());
+  Eigen::VectorXd solution(size_), extra = Eigen::VectorXd::Zero(size_);
+  for (Eigen::Index i = poses; i < size_; ++i) extra[i] = damping * std::clamp(diagonal_[i], 1e-6, 1e32);
+  if (!analyzed_) analyse(visual);
+  fill(visual, extra);
+  if (!cholesky_.factorise()) return false;
   solution.head(poses) = steps;
   solution.tail(size_ - poses) = -gradient_.tail(size_ - poses);
-  solution = factorisation_.solve(solution).eval();
+  cholesky_.solve(solution);
   if (!solution.allFinite()) return false;
-  for (int i = poses; i < size_; ++i)
+  for (Eigen::Index i = poses; i < size_; ++i)
     predicted_decrease += 0.5 * (extra[i] * solution[i] * solution[i] - gradient_[i] * solution[i]);
   steps = solution.head(poses);
   move_states(solution);
@@ -116,12 +153,13 @@ bool FactorSystem::solve(BlockSystem& visual, double damping, Eigen::VectorXd& s
 
 void FactorSystem::move_states(const Eigen::VectorXd& steps) {
   for (std::size_t i = 0; i < states_.motions.size(); ++i)
-    if (column_of_motion_[i] >= 0)
-      moved_states_.motions[i] = states_.motions[i] + steps.segment<9>(column_of_motion_[i]);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    moved_states_.world[k] = states_.world[k] + (column_of_world_[i] >= 0 ? steps[column_of_world_[i]] : 0.0);
-  }
+    if (const int block = block_of_motion_[i]; block >= 0)
+      moved_states_.motions[i] =
+          states_.motions[i] + steps.segment<9>(first_of_block_[static_cast<std::size_t>(block)]);
+  moved_states_.world = states_.world;
+  Eigen::Index number = size_ - std::count(world_moves_.begin(), world_moves_.end(), true);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (world_moves_[i]) moved_states_.world[static_cast<Eigen::Index>(i)] += steps[number++];
 }
 
 bool FactorSystem::write(BundleProblem& problem) const {

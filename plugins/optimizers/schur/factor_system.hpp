@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "block_cholesky.hpp"
 #include "block_system.hpp"
 #include "holdfast/interfaces/bundle_factors.hpp"
 
@@ -19,8 +22,8 @@ namespace holdfast::schur_plugin {
 ///     [   .        F_mm   F_mw ]  9 m
 ///     [   .          .    F_ww ]  up to 3
 ///
-/// where S is the visual part (BlockSystem) and F the Gauss-Newton Hessian of the factors. Solved by a sparse Cholesky
-/// factorisation with a fill-reducing order, since motions are coupled in chains.
+/// where S is the visual part (BlockSystem) and F the Gauss-Newton Hessian of the factors. Each pose, each motion and
+/// the world is a block of BlockCholesky, since motions are coupled in chains.
 class FactorSystem {
  public:
   /// Takes the factors of a problem; `free_poses` are the indices of the free poses in the order of the system.
@@ -35,9 +38,12 @@ class FactorSystem {
   double cost(const double* poses);
   double moved_cost(const double* poses);
   /// Makes the states after the step the current ones.
-  void accept() { std::swap(states_, moved_states_); }
+  void accept() {
+    std::swap(states_, moved_states_);
+    linearised_ = false;
+  }
 
-  /// Linearises the factors at the current states.
+  /// Linearises the factors at the current states, unless they have not changed since.
   void linearise(const double* poses);
   /// Of a free pose, the diagonal of the factors' Hessian.
   double diagonal(std::size_t number) const { return diagonal_[static_cast<Eigen::Index>(number)]; }
@@ -45,32 +51,42 @@ class FactorSystem {
   /// Solves the system, of which `visual` is the part of the poses with their damping. In: the right-hand side of the
   /// poses; out: their steps. Sets the states after the step, and adds the decrease that the linearisation predicts of
   /// motions and world. False if there is no solution.
-  bool solve(BlockSystem& visual, double damping, Eigen::VectorXd& steps, double& predicted_decrease);
+  bool solve(const BlockSystem& visual, double damping, Eigen::VectorXd& steps, double& predicted_decrease);
   /// Writes the current motions and world to the problem; false if they are not finite.
   bool write(BundleProblem& problem) const;
 
  private:
-  /// Columns of the states of a factor in the system, and derivatives by them.
-  struct Columns {
-    int count = 0;
-    std::array<int, 33> column;
-    Eigen::Matrix<double, 15, 33> derivative;
+  /// Free states of a factor, and its Hessian by them.
+  struct Term {
+    struct Block {
+      std::size_t number = 0;  // of the block in the system
+      Eigen::Index begin = 0;  // of its columns in the Hessian
+      Eigen::Index first = 0;  // its first number in the system
+      Eigen::Index size = 0;
+    };
+    std::vector<Block> blocks;
+    Eigen::MatrixXd hessian;
   };
   void take_poses(const double* poses, FactorEvaluation::States& states) const;
-  Columns columns_of(const FactorEvaluation::Factor& factor, const FactorError& error) const;
+  Term term_of(const FactorEvaluation::Factor& factor) const;
+  /// Derivatives of the residual by the free states of a factor.
+  Eigen::MatrixXd derivative_of(const FactorEvaluation::Factor& factor, const FactorError& error) const;
+  void analyse(const BlockSystem& visual);
+  void fill(const BlockSystem& visual, const Eigen::VectorXd& extra);
   void move_states(const Eigen::VectorXd& steps);
 
   std::optional<FactorEvaluation> evaluation_;
   FactorEvaluation::States states_, moved_states_;
   std::vector<std::uint32_t> free_poses_;
-  std::vector<int> column_of_pose_, column_of_motion_;  // -1 = fixed
-  std::array<int, 3> column_of_world_{-1, -1, -1};
-  int size_ = 0;
-  std::vector<Eigen::Triplet<double>> factor_entries_, entries_;
+  std::vector<int> block_of_pose_, block_of_motion_;  // -1 = fixed
+  std::array<bool, 3> world_moves_{};
+  std::vector<int> sizes_;                    // of blocks
+  std::vector<Eigen::Index> first_of_block_;  // its first number
+  Eigen::Index size_ = 0;
+  std::vector<Term> terms_;  // by factor
   Eigen::VectorXd diagonal_, gradient_;
-  Eigen::SparseMatrix<double> matrix_;
-  bool analyzed_ = false;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factorisation_;
+  BlockCholesky cholesky_;
+  bool analyzed_ = false, linearised_ = false;
 };
 
 }  // namespace holdfast::schur_plugin
