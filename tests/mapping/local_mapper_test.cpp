@@ -215,6 +215,29 @@ TEST_F(LocalMapperTest, InertialMeasurementsHoldAKeyframeThatFewPointsHold) {
   EXPECT_TRUE(moves(0.1, 0.003)) << "ample points hold it";
 }
 
+TEST_F(LocalMapperTest, InertialMeasurementsHoldKeyframesThatHoldEachOtherAlone) {
+  Flight flight(0.1);
+  const auto moves = [&](double x) {
+    map.clear();
+    LocalMapper fleeing(MappingSettings{}, close_depth_factor, map, mutex, flight);
+    fleeing.refine(fleeing.insert(MapAccess(map), frame_at(beside(0)), false, times), times);
+    std::vector<std::pair<KeyFrameId, Eigen::Isometry3d>> behind;
+    for (const double step : {0.0, 0.02}) {
+      Frame frame = frame_at(beside(x + step));
+      match(frame, 1);
+      frame.inertial_deviation = 0.003;
+      const Eigen::Isometry3d pose = frame.T_camera_world;
+      behind.emplace_back(fleeing.insert(MapAccess(map), frame, false, times), pose);
+      fleeing.refine(behind.back().first, times);
+    }
+    int moved = 0;
+    for (const auto& [id, pose] : behind) moved += map.keyframe(id).frame.T_camera_world.isApprox(pose, 1e-12) ? 0 : 1;
+    return moved;
+  };
+  EXPECT_EQ(moves(4.2), 0) << "they share next to nothing with the first keyframe, and ample points with each other";
+  EXPECT_EQ(moves(0.1), 2) << "ample points of the first keyframe hold them";
+}
+
 TEST_F(LocalMapperTest, KeyframesThatShowNothingNewAreRemovedButNeverTheFirst) {
   KeyFrameId first;
   for (int k = 0; k < 12; ++k) {
