@@ -89,22 +89,55 @@ LocalBundle build_bundle(const Map& map, std::vector<KeyFrameId> free, const std
   return bundle;
 }
 
+constexpr int few_points = 2 * minimum_shared_points;  // that determine no pose against inertial measurements
+
+/// For each free keyframe, the number of points that its group shares with keyframes outside. Keyframes are in one
+/// group where few_points tie them to each other: however many these are, a group moves as a whole.
+std::vector<int> count_ties_of_groups(const LocalBundle& bundle) {
+  const std::vector<BundleProblem::Pose>& poses = bundle.problem.poses;
+  std::vector<std::vector<std::size_t>> poses_of_point(bundle.points.size());
+  for (const BundleProblem::Observation& observation : bundle.problem.observations)
+    poses_of_point[observation.point].push_back(observation.pose);
+  const std::size_t free = bundle.shared_points.size();
+  std::vector<std::size_t> group(poses.size());
+  std::iota(group.begin(), group.end(), std::size_t{0});
+  std::vector<int> common(free * free, 0);
+  const auto join = [&group](std::size_t kept, std::size_t joined) {
+    std::replace(group.begin(), group.end(), joined, kept);
+  };
+  for (const std::vector<std::size_t>& seen_by : poses_of_point)
+    for (const std::size_t a : seen_by)
+      for (const std::size_t b : seen_by)
+        if (a < b && !poses[a].fixed && !poses[b].fixed && ++common[a * free + b] == few_points)
+          join(group[a], group[b]);
+  std::vector<int> ties(free, 0);
+  for (const std::vector<std::size_t>& seen_by : poses_of_point)
+    for (std::size_t i = 0; i < free; ++i) {
+      const auto is_inside = [&](std::size_t pose) { return group[pose] == group[i]; };
+      if (std::any_of(seen_by.begin(), seen_by.end(), is_inside) &&
+          !std::all_of(seen_by.begin(), seen_by.end(), is_inside))
+        ++ties[i];
+    }
+  return ties;
+}
+
 /// The keyframes that few points constrain and whose adjusted poses contradict inertial measurements, with those that
-/// depend on them. Keyframes behind a view that people hid may share a handful of points with the rest of the map, or
-/// only with each other; such points move all of them by decimetres.
+/// depend on them. Keyframes behind a view that people hid may share a handful of points with the rest of the map, and
+/// many with each other; such points move all of them by decimetres.
 std::vector<KeyFrameId> find_diverged(const LocalBundle& bundle, const Map& map) {
-  constexpr int few_points = 2 * minimum_shared_points;
   std::vector<std::size_t> by_age(bundle.shared_points.size());
   std::iota(by_age.begin(), by_age.end(), std::size_t{0});
   const auto keyframe = [&](std::size_t i) -> const KeyFrame& { return map.keyframe(bundle.keyframes[i]); };
+  const auto is_predicted = [&](std::size_t i) { return inertial_divergence(keyframe(i).frame) > 0.0; };
+  if (std::none_of(by_age.begin(), by_age.end(), is_predicted)) return {};
   std::sort(by_age.begin(), by_age.end(),
             [&](std::size_t a, std::size_t b) { return keyframe(a).sequence < keyframe(b).sequence; });
+  const std::vector<int> ties = count_ties_of_groups(bundle);
   std::vector<KeyFrameId> diverged;
   for (const std::size_t i : by_age) {
     const double limit = inertial_divergence(keyframe(i).frame);
     const KeyFrameId parent = keyframe(i).parent;
-    if (bundle.problem.poses[i].fixed || limit <= 0.0 || !parent.valid() || bundle.shared_points[i] >= few_points)
-      continue;
+    if (bundle.problem.poses[i].fixed || limit <= 0.0 || !parent.valid() || ties[i] >= few_points) continue;
     Eigen::Isometry3d motion = bundle.problem.poses[i].T_camera_world * keyframe(i).frame.T_world_camera();
     const auto found = std::find(bundle.keyframes.begin(), bundle.keyframes.end(), parent);
     if (found != bundle.keyframes.end()) {

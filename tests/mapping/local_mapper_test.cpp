@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
+#include <vector>
 
 #include "holdfast/plugin/registry.hpp"
 #include "holdfast/tracking/frame_builder.hpp"
@@ -213,6 +215,34 @@ TEST_F(LocalMapperTest, InertialMeasurementsHoldAKeyframeThatFewPointsHold) {
   EXPECT_TRUE(moves(4.2, 0.0)) << "nothing is known of its motion";
   EXPECT_TRUE(moves(4.2, 0.05)) << "the measurements allow it";
   EXPECT_TRUE(moves(0.1, 0.003)) << "ample points hold it";
+}
+
+TEST_F(LocalMapperTest, InertialMeasurementsHoldKeyframesThatHoldEachOtherAlone) {
+  Flight flight(0.1);
+  const auto moves = [&](double x) {
+    map.clear();
+    LocalMapper fleeing(MappingSettings{}, close_depth_factor, map, mutex, flight);
+    fleeing.refine(fleeing.insert(MapAccess(map), frame_at(beside(-0.5 * x)), false, times), times);
+    std::vector<std::pair<KeyFrameId, Eigen::Isometry3d>> behind;
+    for (const double step : {0.0, 0.02}) {
+      Frame frame = frame_at(beside(0.5 * x + step));
+      match(frame, 1);
+      frame.inertial_deviation = 0.003;
+      const Eigen::Isometry3d pose = frame.T_camera_world;
+      behind.emplace_back(fleeing.insert(MapAccess(map), frame, false, times), pose);
+      fleeing.refine(behind.back().first, times);
+    }
+    int common = 0;
+    for (const MapPointId point : map.keyframe(behind.front().first).frame.map_points)
+      for (const Observation& seen : point.valid() ? map.point(point).observations : std::vector<Observation>())
+        common += seen.keyframe == behind.back().first ? 1 : 0;
+    EXPECT_GT(common, 30);
+    int moved = 0;
+    for (const auto& [id, pose] : behind) moved += map.keyframe(id).frame.T_camera_world.isApprox(pose, 1e-12) ? 0 : 1;
+    return moved;
+  };
+  EXPECT_EQ(moves(4.0), 0) << "they share next to nothing with the first keyframe, and ample points with each other";
+  EXPECT_EQ(moves(0.1), 2) << "ample points of the first keyframe hold them";
 }
 
 TEST_F(LocalMapperTest, KeyframesThatShowNothingNewAreRemovedButNeverTheFirst) {
