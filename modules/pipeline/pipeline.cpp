@@ -357,7 +357,6 @@ void Pipeline::finish() {
     const std::uint32_t submap = s.tracker.main_submap(locked);
     const std::optional<MapInertia> estimates = s.tracker.inertia_of(locked, submap);
     if (!s.parts.localise_only) locked->set_inertia(estimates);
-    if (s.inertia && !estimates) s.inertia->forget_map();  // measurements that tracking has refuted link nothing
     if (s.inertia) s.inertia->set_estimates(estimates, submap);
     s.flow.keep_submap(locked, submap);
   }

@@ -161,6 +161,7 @@ class InertialSmoother {
   /// Deviations of tracked frames: the root mean square, within seven frames to each side, of what the solution changed
   /// beside their mean, with Cauchy's robust factor for outliers. The mean does not count: errors of tracking grow for
   /// some frames, but a slow change may be one of the measurements as well, which must not take the weight of poses.
+  /// Drifting frames count as unchanged, so that a few frames between them cannot be their own mean.
   void reweight(const Chain& chain, BundleProblem& problem) const {
     std::vector<geometry::Vector6d> moved(problem.poses.size(), geometry::Vector6d::Zero());
     for (const BundleFactors::PosePrior& prior : problem.factors.pose_priors)
@@ -168,7 +169,8 @@ class InertialSmoother {
     std::vector<Deviations> changes(moved.size(), Deviations::Zero()), of_frames;
     for (std::size_t i = 0; i < moved.size(); ++i) {
       if (roles_[chain.begin + i] != Role::tracked) continue;
-      const geometry::Vector6d change = moved[i] - mean_around(chain, i, moved, geometry::Vector6d::Zero().eval());
+      const geometry::Vector6d change =
+          moved[i] - mean_around(chain, i, moved, true, geometry::Vector6d::Zero().eval());
       changes[i] = Deviations(change.head<3>().norm(), change.tail<3>().norm()) / std::sqrt(3.0);
       of_frames.push_back(changes[i]);
     }
@@ -180,7 +182,7 @@ class InertialSmoother {
     for (BundleFactors::PosePrior& prior : problem.factors.pose_priors) {
       Deviations deviations = keyframe_median_share * median;
       if (roles_[chain.begin + prior.pose] == Role::tracked) {
-        deviations = mean_around(chain, prior.pose, squares, Deviations::Zero().eval()).sqrt();
+        deviations = mean_around(chain, prior.pose, squares, false, Deviations::Zero().eval()).sqrt();
         deviations = deviations.max(0.3 * median).max(least);
         deviations *= (1.0 + (changes[prior.pose] / (2.0 * deviations)).square()).sqrt();
       }
@@ -188,13 +190,16 @@ class InertialSmoother {
     }
   }
 
-  /// Of the tracked frames within seven frames to each side.
+  /// Of the tracked frames within seven frames to each side, and of the drifting ones if these count.
   template <class Value>
-  Value mean_around(const Chain& chain, std::size_t pose, const std::vector<Value>& values, Value sum) const {
+  Value mean_around(const Chain& chain, std::size_t pose, const std::vector<Value>& values, bool drifting_count,
+                    Value sum) const {
     constexpr std::size_t reach = 7;
     double count = 0.0;
-    for (std::size_t k = pose < reach ? 0 : pose - reach; k < std::min(values.size(), pose + reach + 1); ++k)
-      if (roles_[chain.begin + k] == Role::tracked) sum += values[k], count += 1.0;
+    for (std::size_t k = pose < reach ? 0 : pose - reach; k < std::min(values.size(), pose + reach + 1); ++k) {
+      const Role role = roles_[chain.begin + k];
+      if (role == Role::tracked || (drifting_count && role == Role::drifting)) sum += values[k], count += 1.0;
+    }
     return sum / count;
   }
 

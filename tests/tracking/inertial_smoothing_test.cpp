@@ -131,6 +131,13 @@ TEST_F(InertialSmoothingTest, FramesOfABridgeFollowTheFramesOnBothSides) {
   EXPECT_LT(largest_error(), 0.005);
 }
 
+TEST_F(InertialSmoothingTest, AFalsePoseDoesNotHoldABridge) {
+  std::erase_if(drifting.frames,
+                [](double stamp) { return stamp > frame_interval * 53.5 && stamp < frame_interval * 56.5; });
+  EXPECT_EQ(smooth(), 99U);
+  EXPECT_LT(largest_error(), 0.02);
+}
+
 TEST_F(InertialSmoothingTest, ErrorsOfTrackedFramesAreSmoothedByTheirOwnSize) {
   Random random(5);
   const auto disturbed = [&](int i) { return i % 20 != 0 && (i < first_bridged || i > last_bridged); };
