@@ -179,6 +179,21 @@ TEST_F(LoopCloserTest, DriftBehindAHiddenViewIsPlausibleWithInertia) {
   }
 }
 
+TEST_F(LoopCloserTest, HiddenViewsDoNotMakeEveryDriftPlausible) {
+  const Eigen::Isometry3d mistake(Eigen::Translation3d(3.5, 0.5, 2.5));
+  closer->use_inertia();
+  test::RingWorld world(0.0);
+  world.add_wall(0, round_trip, 2500);
+  ASSERT_FALSE(walk(world, 0, 0.3 * round_trip, 20));
+  for (int i = 0; i < 4; ++i) {
+    world.hide_view(i < 3 ? Eigen::Isometry3d::Identity() : mistake, 5.0);
+    ASSERT_FALSE(walk(world, (0.3 + 0.05 * i) * round_trip, (0.35 + 0.05 * i) * round_trip, 5));
+  }
+  EXPECT_FALSE(walk(world, 0.5 * round_trip, 1.2 * round_trip, 60));
+  EXPECT_GT(error_before, 4.0);
+  EXPECT_GT(closer->counts().of(LoopVerdict::implausible_correction), 3U);
+}
+
 TEST_F(LoopCloserTest, LookAlikePlaceIsRefusedWhereOldPointsConfirmThePose) {
   // Any drift is believed, and the detector knows the copy only. But the second time round, the points of the original
   // lie where the present pose expects them.
