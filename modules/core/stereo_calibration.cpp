@@ -44,6 +44,10 @@ Eigen::Matrix2d mean_square(const Camera& camera) {
   return (Eigen::Matrix2d() << 1.0, second, second, fourth).finished();
 }
 
+/// Chi-square of columns that is no chance: one in a thousand exceeds it with two degrees of freedom, one in 5000 with
+/// one.
+constexpr double significant = 13.8;
+
 }  // namespace
 
 StereoCalibration::StereoCalibration(const Camera& camera, const PairErrors& errors, bool estimates)
@@ -126,7 +130,6 @@ void StereoCalibration::learn_columns(const ColumnEstimate& estimate, const Pair
 /// c and q of ColumnEstimate. A turn is the cause unless the difference to it is significant: q is determined several
 /// times worse than c, and a turn displaces both alike.
 ColumnEstimate StereoCalibration::solve_columns() const {
-  constexpr double significant = 13.8;  // standard deviations squared, as in use_columns()
   // A pair that is used as rectified has errors of about a pixel.
   const Eigen::Matrix2d normal = column_normal_ + window_normal_ + Eigen::Matrix2d::Identity();
   const Eigen::Vector2d gradient = column_gradient_ + window_gradient_;
@@ -140,7 +143,6 @@ ColumnEstimate StereoCalibration::solve_columns() const {
 }
 
 void StereoCalibration::use_columns() {
-  constexpr double significant = 13.8;  // one in a thousand exceeds it by chance
   const auto [found, normal] = solve_columns();
   const Eigen::Matrix2d covariance = normal.inverse();
   PairErrors& errors = estimate_.errors;

@@ -16,7 +16,7 @@ void MappingSettings::describe(ParameterTable<MappingSettings>& table) {
   table
       .add(
           "far_parallax", &S::far_parallax,
-          "parallax above which features of one camera that find no match with 1.15 degrees are triangulated, too, for "
+          "parallax above which features of one camera that were not triangulated with 1.15 degrees become points, for "
           "cameras that turn more than they move; 1.15 = none of them")
       .unit("deg")
       .range(0.01, 1.15);

@@ -117,6 +117,8 @@ class InertialSmoother {
 
  private:
   bool drifts(std::size_t i) const { return roles_[i] == Role::drifting; }
+  /// In the unit of the map.
+  Deviations first_deviations_of_map() const { return {first_deviations[0] / unit_, first_deviations[1]}; }
 
   void add_chains(std::size_t begin, std::size_t end, std::vector<Chain>& chains) const {
     std::vector<double> timestamps;
@@ -139,7 +141,6 @@ class InertialSmoother {
   }
 
   BundleProblem problem_of(const Chain& chain) const {
-    const Deviations deviations(first_deviations[0] / unit_, first_deviations[1]);
     BundleProblem problem;
     problem.camera = map_.keyframe(map_.keyframes_by_age().front()).frame.camera.get();
     for (std::size_t i = chain.begin; i < chain.end; ++i) {
@@ -148,7 +149,7 @@ class InertialSmoother {
       problem.poses.push_back({T_camera_world, false});
       if (drifts(i)) continue;
       const double share = roles_[i] == Role::keyframe ? keyframe_share : 1.0;
-      problem.factors.pose_priors.push_back({pose, T_camera_world, information_of(share * deviations)});
+      problem.factors.pose_priors.push_back({pose, T_camera_world, information_of(share * first_deviations_of_map())});
     }
     add_inertial_factors(problem, chain.links, inertia_);
     for (BundleFactors::MotionPrior& prior : problem.factors.motion_priors)
@@ -169,8 +170,7 @@ class InertialSmoother {
     std::vector<Deviations> changes(moved.size(), Deviations::Zero()), of_frames;
     for (std::size_t i = 0; i < moved.size(); ++i) {
       if (roles_[chain.begin + i] != Role::tracked) continue;
-      const geometry::Vector6d change =
-          moved[i] - mean_around(chain, i, moved, true, geometry::Vector6d::Zero().eval());
+      const geometry::Vector6d change = moved[i] - mean_around(chain, i, moved, true);
       changes[i] = Deviations(change.head<3>().norm(), change.tail<3>().norm()) / std::sqrt(3.0);
       of_frames.push_back(changes[i]);
     }
@@ -178,11 +178,11 @@ class InertialSmoother {
     std::vector<Deviations> squares;
     for (const Deviations& change : changes) squares.push_back(change.square());
     const Deviations median = upper_medians(of_frames);
-    const Deviations least = least_share * Deviations(first_deviations[0] / unit_, first_deviations[1]);
+    const Deviations least = least_share * first_deviations_of_map();
     for (BundleFactors::PosePrior& prior : problem.factors.pose_priors) {
       Deviations deviations = keyframe_median_share * median;
       if (roles_[chain.begin + prior.pose] == Role::tracked) {
-        deviations = mean_around(chain, prior.pose, squares, false, Deviations::Zero().eval()).sqrt();
+        deviations = mean_around(chain, prior.pose, squares, false).sqrt();
         deviations = deviations.max(0.3 * median).max(least);
         deviations *= (1.0 + (changes[prior.pose] / (2.0 * deviations)).square()).sqrt();
       }
@@ -192,9 +192,9 @@ class InertialSmoother {
 
   /// Of the tracked frames within seven frames to each side, and of the drifting ones if these count.
   template <class Value>
-  Value mean_around(const Chain& chain, std::size_t pose, const std::vector<Value>& values, bool drifting_count,
-                    Value sum) const {
+  Value mean_around(const Chain& chain, std::size_t pose, const std::vector<Value>& values, bool drifting_count) const {
     constexpr std::size_t reach = 7;
+    Value sum = Value::Zero();
     double count = 0.0;
     for (std::size_t k = pose < reach ? 0 : pose - reach; k < std::min(values.size(), pose + reach + 1); ++k) {
       const Role role = roles_[chain.begin + k];

@@ -14,7 +14,7 @@ struct MappingSettings {
   int minimum_depth_points = 100;
   /// Number of covisible keyframes for triangulation and fusion of points; 10 as in ORB-SLAM2 for RGB-D.
   int neighbours = 10;
-  /// Parallax [degrees] above which features of one camera that find no match with 1.15 degrees are triangulated, too.
+  /// Parallax [degrees] above which features of one camera that were not triangulated with 1.15 degrees become points.
   /// A camera that turns more than it moves sees far points below 1.15 degrees, unless errors of match and pose make
   /// them appear nearer than they are: with that limit alone, only these errors become points.
   double far_parallax = 1.15;

@@ -27,11 +27,11 @@ void follow_keyframes(FrameHistory& history, const Map& map, const Trajectory& b
 /// Estimates the poses of frames between keyframes again, at the end of a run: a fixed-interval smoother (Forster et
 /// al. 2017, section VII; Campos et al. 2020), whose states are all frames that inertial measurements link. Tracked
 /// frames have their poses as priors, with deviations estimated from a first solution; keyframes have priors of half
-/// their median, and stay where they are. Measurements weigh a ninth of what their noise says, for errors of the IMU's
-/// model. Frames that drift have none: what the map corrected behind a bridge is thereby
-/// spread over it by the uncertainty of the measurements. Drifting keyframes move with the points that no other
-/// keyframe observes. Where a link is missing, the chain of frames ends; a bridge at the end of a chain stays as it is.
-/// Returns the number of frames with a new pose. `stop`: from any thread; chains that were not solved yet stay.
+/// their median, and stay where they are. Frames that drift have none: what the map corrected behind a bridge is
+/// thereby spread over it by the uncertainty of the measurements. These weigh a ninth of what their noise says, for
+/// errors of the IMU's model. Drifting keyframes move with the points that no other keyframe observes. Where a link is
+/// missing, the chain of frames ends; a bridge at the end of a chain stays as it is. Returns the number of frames with
+/// a new pose. `stop`: from any thread; chains that were not solved yet stay.
 std::size_t smooth_by_inertia(FrameHistory& history, Map& map, const DriftingPoses& drifting,
                               const InertialHistory& inertia, Optimizer& optimizer, const std::atomic<bool>& stop);
 
