@@ -121,6 +121,8 @@ TEST(OneCameraWithInertia, EndsInMetres) {
   with_scale.alignment = AlignmentKind::sim3;
   EXPECT_NEAR(evaluate(truth, pipeline.trajectory(), with_scale).alignment.scale, 1.0, 0.02);
   EXPECT_NEAR(evaluate(truth, pipeline.keyframe_trajectory(), with_scale).alignment.scale, 1.0, 0.02);
+  EXPECT_LT(evaluate(truth, pipeline.trajectory(), {}).absolute_error.rmse, 0.006)
+      << "frames between keyframes as well";
 }
 
 }  // namespace
