@@ -31,12 +31,18 @@ void PairDepth::check_images(const SensorFrame& sensor_frame) const {
 }
 
 cv::Mat PairDepth::begin(const SensorFrame& sensor_frame, const cv::Mat& grey) {
-  const cv::Mat& right = sensor_frame.right;
-  if (right.channels() == 3) cv::cvtColor(right, converted_, cv::COLOR_BGR2GRAY);
   left_ = grey;
-  right_ = right.channels() == 3 ? converted_ : right;
+  right_ = sensor_frame.right;
   image_.reset();
   return parts_.is_dense ? image() : cv::Mat();
+}
+
+const cv::Mat& PairDepth::grey_right() {
+  if (right_.channels() == 3) {
+    cv::cvtColor(right_, converted_, cv::COLOR_BGR2GRAY);
+    right_ = converted_;
+  }
+  return right_;
 }
 
 const cv::Mat& PairDepth::image() {
@@ -46,17 +52,18 @@ const cv::Mat& PairDepth::image() {
 
 const cv::Mat& PairDepth::corrected_right() {
   const PairErrors errors = parts_.calibration != nullptr ? parts_.calibration->errors() : PairErrors();
-  if (errors == PairErrors()) return right_;
+  const cv::Mat& right = grey_right();
+  if (errors == PairErrors()) return right;
   if (map_x_.empty() || !(errors == errors_)) {
     errors_ = errors;
-    map_x_.create(right_.size(), CV_32FC1), map_y_.create(right_.size(), CV_32FC1);
-    for (int y = 0; y < right_.rows; ++y)
-      for (int x = 0; x < right_.cols; ++x) {
+    map_x_.create(right.size(), CV_32FC1), map_y_.create(right.size(), CV_32FC1);
+    for (int y = 0; y < right.rows; ++y)
+      for (int x = 0; x < right.cols; ++x) {
         map_x_.ptr<float>(y)[x] = static_cast<float>(x + errors.column(camera_, x, y));
         map_y_.ptr<float>(y)[x] = static_cast<float>(y + errors.row(camera_, x, y));
       }
   }
-  cv::remap(right_, corrected_, map_x_, map_y_, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  cv::remap(right, corrected_, map_x_, map_y_, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
   return corrected_;
 }
 
@@ -83,14 +90,16 @@ cv::Mat PairDepth::compute_image() {
 }
 
 void PairDepth::extract(const cv::Mat& grey, const cv::Mat& ignore, FeatureExtractor& extractor, Frame& frame) {
-  if (parts_.right_features == nullptr || std::thread::hardware_concurrency() < 2) {
+  static const unsigned cores = std::thread::hardware_concurrency();  // reads a file
+  if (parts_.right_features == nullptr || cores < 2) {
     extractor.extract(grey, ignore, frame.features);
-    (parts_.right_features != nullptr ? *parts_.right_features : extractor).extract(right_, cv::Mat(), right_features_);
+    (parts_.right_features != nullptr ? *parts_.right_features : extractor)
+        .extract(grey_right(), cv::Mat(), right_features_);
     return;
   }
   std::future<void> other = std::async(std::launch::async, [&] {
     name_this_thread("right features");
-    parts_.right_features->extract(right_, cv::Mat(), right_features_);
+    parts_.right_features->extract(grey_right(), cv::Mat(), right_features_);
   });
   extractor.extract(grey, ignore, frame.features);
   other.get();
@@ -98,13 +107,13 @@ void PairDepth::extract(const cv::Mat& grey, const cv::Mat& ignore, FeatureExtra
 
 void PairDepth::read(const SensorFrame&, Frame& frame) {
   if (parts_.calibration == nullptr) {
-    matcher_.match(left_, right_, right_features_, frame);
+    matcher_.match(left_, grey_right(), right_features_, frame);
     return;
   }
-  matcher_.match(left_, right_, right_features_, frame, parts_.calibration->begin_frame());
+  matcher_.match(left_, grey_right(), right_features_, frame, parts_.calibration->begin_frame());
   // Rows that turn out wrong make columns wrong, because patches are compared in them.
   if (parts_.calibration->learn_rows(matcher_.row_differences()))
-    matcher_.match(left_, right_, right_features_, frame, parts_.calibration->begin_frame());
+    matcher_.match(left_, grey_right(), right_features_, frame, parts_.calibration->begin_frame());
 }
 
 bool PairDepth::is_pair_exchanged(const Frame& frame) {
@@ -119,7 +128,7 @@ bool PairDepth::is_pair_exchanged(const Frame& frame) {
   other.pyramid = frame.pyramid;
   other.features = right_features_;
   other.x = right_features_.x, other.y = right_features_.y;
-  matcher_.match(right_, left_, frame.features, other);
+  matcher_.match(grey_right(), left_, frame.features, other);
   const std::size_t count = with_depth(other);
   return count >= least_features && count >= least_ratio * with_depth(frame);
 }
