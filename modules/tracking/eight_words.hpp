@@ -17,6 +17,10 @@ using EightWords = std::int16_t __attribute__((vector_size(16)));
 using SixteenWords = std::int16_t __attribute__((vector_size(32)));
 using ThirtyTwoWords = std::int16_t __attribute__((vector_size(64)));
 
+/// Four words, and the fractional numbers for which every processor has instructions.
+using FourWords = std::int16_t __attribute__((vector_size(8)));
+using FourFloats = float __attribute__((vector_size(16)));
+
 /// As many bytes, whole numbers and fractional ones.
 template <class Words>
 struct LanesOf;

@@ -7,6 +7,7 @@
 #include <string>
 #include <thread>
 
+#include "eight_words.hpp"
 #include "holdfast/core/depth_noise.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/size_text.hpp"
@@ -67,6 +68,20 @@ const cv::Mat& PairDepth::corrected_right() {
   return corrected_;
 }
 
+namespace {
+
+/// Depth of one or several disparities, and 0 where they are less than `least` or depth is too uncertain.
+template <class Floats>
+HOLDFAST_INLINE Floats depth_of(const Floats& disparity, float numerator, float least) {
+  constexpr float noise = 0.17F;  // px; standard deviation of disparities
+  const auto is_measured = disparity >= least;
+  const Floats z = numerator / (is_measured ? disparity : Floats{} + 1.0F);
+  const auto is_certain = z * noise <= (depth_noise::farther.offset + depth_noise::farther.slope * z) * disparity;
+  return (is_measured & is_certain) ? z : Floats{};
+}
+
+}  // namespace
+
 cv::Mat PairDepth::compute_image() {
   if (parts_.settings.dense == DenseStereoMethod::off) return {};
   if (parts_.dense == nullptr) {
@@ -74,17 +89,17 @@ cv::Mat PairDepth::compute_image() {
     parts_.dense = own_dense_.get();
   }
   parts_.dense->match(left_, corrected_right(), disparity_);
-  constexpr float noise = 0.17F;  // px; standard deviation of disparities
+  constexpr int lanes = sizeof(FourFloats) / sizeof(float);
   cv::Mat depth(left_.size(), CV_32FC1);
   const auto numerator = static_cast<float>(fx_baseline_);
   const auto least = static_cast<float>(parts_.settings.minimum_disparity);
   for (int row = 0; row < depth.rows; ++row) {
     const float* from = disparity_.ptr<float>(row);
     float* to = depth.ptr<float>(row);
-    for (int column = 0; column < depth.cols; ++column) {
-      const float z = from[column] >= least ? numerator / from[column] : 0.0F;
-      to[column] = z * noise <= depth_noise::farther(z) * from[column] ? z : 0.0F;
-    }
+    int column = 0;
+    for (; column + lanes <= depth.cols; column += lanes)
+      store(depth_of(lanes_at<FourFloats>(from + column), numerator, least), to + column);
+    for (; column < depth.cols; ++column) to[column] = depth_of(from[column], numerator, least);
   }
   return depth;
 }
