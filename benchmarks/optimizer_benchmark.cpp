@@ -12,9 +12,11 @@
 #include <vector>
 
 #include "geometry/synthetic.hpp"
+#include "holdfast/core/median.hpp"
 #include "holdfast/geometry/pose_problem.hpp"
 #include "holdfast/geometry/preintegration.hpp"
 #include "optimizers/both_optimizers.hpp"
+#include "processor_time.hpp"
 
 namespace holdfast {
 namespace {
@@ -92,6 +94,35 @@ void optimize_map(benchmark::State& state, bool with_inertia) {
 }
 BENCHMARK_CAPTURE(optimize_map, visual, false)->Arg(40)->Arg(160)->Arg(640)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(optimize_map, inertial, true)->Arg(40)->Arg(160)->Arg(640)->Unit(benchmark::kMillisecond);
+
+/// Processor time per iteration of an adjustment of a local map with inertial factors relative to the same one without
+/// them, in turn. Arguments: fixed poses, free poses, points, observations at most per point.
+void inertial_local_map(benchmark::State& state) {
+  const Camera camera = synthetic::camera();
+  const synthetic::BundleCase visual =
+      synthetic::bundle_case(camera, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)),
+                             static_cast<int>(state.range(2)), static_cast<int>(state.range(3)), 1.0, 0.03, 1);
+  synthetic::BundleCase inertial = visual;
+  add_inertial_factors(inertial.poses, inertial.problem);
+  const auto optimizer = make_optimizer("schur");
+  const std::atomic<bool> stop = false;
+  const auto seconds_per_iteration = [&](const BundleProblem& original) {
+    BundleProblem problem = original;
+    problem.robust_iterations = problem.final_iterations = 5;
+    problem.function_tolerance = 1e-15;
+    BundleSummary summary;
+    std::vector<double> times;
+    time(times, [&] { summary = optimizer->optimize_bundle(problem, stop); });
+    return times.front() / summary.iterations;
+  };
+  std::vector<double> ratios;
+  for (auto _ : state) {
+    const double without = seconds_per_iteration(visual.problem);
+    ratios.push_back(seconds_per_iteration(inertial.problem) / without);
+  }
+  state.counters["to_visual"] = upper_median(ratios);
+}
+BENCHMARK(inertial_local_map)->Args({12, 13, 1500, 10})->Args({12, 20, 3000, 12})->Unit(benchmark::kMillisecond);
 
 /// How long an adjustment goes on after it was asked to stop, at moments spread over its whole time; the counters are
 /// in milliseconds. Arguments as above.

@@ -6,8 +6,10 @@
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
+#include <map>
 #include <numeric>
 #include <opencv2/core/utility.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,7 @@
 #include "holdfast/interfaces/feature_extractor.hpp"
 #include "holdfast/plugin/builtin.hpp"
 #include "holdfast/run/configured_pipeline.hpp"
+#include "holdfast/tracking/inertial_motion.hpp"
 #include "holdfast/tracking/pair_depth.hpp"
 #include "orb_yardstick.hpp"
 #include "processor_time.hpp"
@@ -119,6 +122,51 @@ void dense_stereo(benchmark::State& state) {
   state.counters["ratio"] = median(dense_times) / median(orb_times);
 }
 
+/// The inertial part of tracking, with true poses of the simulated room: prediction, test and correction of every
+/// frame, and the attempts to start. `ratio` is of the means of processor times, `median` of the medians.
+void inertial_tracking(benchmark::State& state, bool scale_is_known) {
+  cv::setNumThreads(1);
+  std::vector<double> inertial_times, orb_times;
+  const cv::Ptr<cv::ORB> orb = cv::ORB::create(1000);
+  std::vector<cv::KeyPoint> keypoints;
+  cv::Mat grey, descriptors;
+  for (auto _ : state) {
+    const BuiltPipeline built = build(
+        "source: { simulated: { path: xyz, duration: 20 } }\ncamera: tum_fr3\nimu: bmi055\nfeatures: orb\n"
+        "optimizer: schur\n");
+    InertialMotion inertia(built.source->describe().imu, scale_is_known);
+    std::map<double, Eigen::Isometry3d> poses;  // T_camera_world
+    const auto past_pose = [&poses](double timestamp) -> std::optional<Eigen::Isometry3d> {
+      const auto found = poses.find(timestamp);
+      return found != poses.end() ? std::optional(found->second) : std::nullopt;
+    };
+    std::optional<Eigen::Isometry3d> last;
+    while (const auto frame = built.source->next()) {
+      cv::cvtColor(frame->colour, grey, cv::COLOR_BGR2GRAY);
+      time(orb_times, [&] { orb->detectAndCompute(grey, cv::noArray(), keypoints, descriptors); });
+      const Eigen::Isometry3d pose = frame->truth->T_world_camera->inverse();
+      poses[frame->timestamp] = pose;
+      time(inertial_times, [&] {
+        inertia.begin_frame(*frame);
+        if (last) inertia.follow_map(*last);
+        benchmark::DoNotOptimize(inertia.prediction());
+        benchmark::DoNotOptimize(inertia.contradicts(pose, 1.0));
+        inertia.found(pose, 0.001, past_pose);
+      });
+      last = pose;
+    }
+    if (!inertia.is_reliable()) state.SkipWithError("the inertial state is not reliable");
+    state.SetIterationTime(std::accumulate(inertial_times.begin(), inertial_times.end(), 0.0));
+  }
+  const auto mean = [](const std::vector<double>& times) {
+    return std::accumulate(times.begin(), times.end(), 0.0) / static_cast<double>(times.size());
+  };
+  state.counters["inertial_ms"] = 1e3 * mean(inertial_times);
+  state.counters["cv_orb_ms"] = 1e3 * mean(orb_times);
+  state.counters["ratio"] = mean(inertial_times) / mean(orb_times);
+  state.counters["median"] = median(inertial_times) / median(orb_times);
+}
+
 BENCHMARK_CAPTURE(tracking, orb, std::string("orb"))->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(tracking, opencv_orb, std::string("opencv_orb"))
     ->Iterations(1)
@@ -128,6 +176,8 @@ BENCHMARK_CAPTURE(stereo_tracking, orb, std::string("orb"))
     ->Iterations(1)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(inertial_tracking, depth, true)->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(inertial_tracking, one_camera, false)->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(dense_stereo)->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/imu_plausibility.hpp"
 #include "holdfast/core/imu_timeline.hpp"
+#include "holdfast/core/metric_map.hpp"
 #include "holdfast/core/stereo_calibration.hpp"
 #include "holdfast/core/thread_annotations.hpp"
 #include "holdfast/interfaces/inertial_history.hpp"
@@ -144,6 +145,11 @@ struct Pipeline::State {
     return [this](const Frame& frame, const Eigen::Isometry3d& predicted, StageTimes& times) {
       return flow.align_with_surface(frame, predicted, times);
     };
+  }
+  /// Whether one camera's map is finished and inertial measurements have not scaled it to metres.
+  bool has_own_unit() const {
+    const Map& whole = map.unshared();
+    return finished && parts.imu && parts.tracking.inertia && !whole.keyframes().empty() && !is_metric(whole);
   }
   bool keeps_classes() const { return !parts.segmenter->classes().empty() && !parts.localise_only; }
   /// Throws InputError for a frame that cannot be processed; it leaves no trace: the next one may have its stamp.
@@ -364,6 +370,7 @@ void Pipeline::finish() {
   s.flow.adjust_after_last_loop();
   s.smooth_frames(before);
   s.smooth_trajectory();
+  if (!s.parts.localise_only) make_metric(s.map.unshared());
   s.flow.finish_surface();
   if (s.keeps_classes()) s.map.unshared().classify_points();
   for (const auto& observer : s.parts.observers) observer->on_finish(s.map.unshared());
@@ -442,6 +449,10 @@ Warnings Pipeline::warnings() const {
     for (std::string& suspicion :
          imu_suspicions(state_->imu, {imu->rate, imu->gyroscope_range, imu->accelerometer_range}))
       add_warning(warnings, {{"SensorFrame::imu"}, std::move(suspicion)});
+  if (state_->has_own_unit())
+    add_warning(warnings, {{"tracking.inertia"},
+                           "inertial measurements gave no scale: the map keeps its own unit of length. They need five "
+                           "seconds of tracked frames in which the camera accelerates"});
   for (const Module* module : state_->modules) add_warnings(warnings, module->warnings());
   return warnings;
 }

@@ -10,6 +10,7 @@
 #include "frame_loop.hpp"
 #include "holdfast/core/counted.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/metric_map.hpp"
 #include "holdfast/dense_map/static_scene.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/surface/class_colours.hpp"
@@ -48,8 +49,7 @@ void evaluate_run(const FrameSource& source, RunRecord& record) {
   for (const SkippedFrame& skipped : record.skipped) record.frame_stamps.push_back(skipped.timestamp);
   std::sort(record.frame_stamps.begin(), record.frame_stamps.end());
   EvaluationOptions options;
-  // The unit of one camera's map is arbitrary.
-  options.alignment = scale_is_known(record.sensor) ? AlignmentKind::se3 : AlignmentKind::sim3;
+  options.alignment = record.is_metric ? AlignmentKind::se3 : AlignmentKind::sim3;
   options.truth_name = "truth";
   options.truth_frame = record.source.truth_frame;
   options.estimate_name = "trajectory.txt";
@@ -67,6 +67,7 @@ void record_pipeline(const Pipeline& pipeline, RunRecord& record) {
   record.keyframes = pipeline.keyframe_trajectory();
   record.map_keyframes = pipeline.map().keyframes().size();
   record.map_points = pipeline.map().points().size();
+  record.is_metric = is_metric(pipeline.map());
   record.mapping = pipeline.mapping_counts();
   record.loops = pipeline.loop_record();
   record.losses = pipeline.loss_record();

@@ -90,5 +90,40 @@ TEST_F(InertiaTest, AMapWithMotionsIsMoreAccurateAndTheSameInEachRun) {
   EXPECT_GT(in_camera(linked.trajectory, gravity).dot(in_camera(truth_, down)), std::cos(0.03));
 }
 
+/// Its map has a unit of its own until then.
+TEST(OneCameraWithInertia, EndsInMetres) {
+  const ImuCalibration imu = *find_imu("bmi055");
+  simulation::Simulator simulator(
+      simulation::read_scene({}, {"camera.path=xyz", "seed=3", "frame_rate=20", "duration=9"}),
+      *find_camera("tum_fr3"));
+  simulation::ImuSensor sensor(simulator.path(), imu, 1);
+  TrackingSettings tracking;
+  tracking.inertia = true;
+  Pipeline pipeline = PipelineBuilder()
+                          .camera(simulator.camera())
+                          .sensor(Sensor::mono)
+                          .imu(imu)
+                          .features(OrbSettings{.count = 1000})
+                          .optimizer(SchurSettings{})
+                          .tracking(tracking)
+                          .build();
+  Trajectory truth;
+  for (std::uint64_t i = 0; i < simulator.frame_count(); ++i) {
+    SensorFrame frame = simulator.frame(i);
+    frame.imu = sensor.take(frame.timestamp);
+    truth.push_back({frame.timestamp, *frame.truth->T_world_camera});
+    pipeline.feed(frame);
+  }
+  pipeline.finish();
+  ASSERT_TRUE(pipeline.map().inertia());
+  EXPECT_EQ(pipeline.map().inertia()->scale, 1.0);
+  EvaluationOptions with_scale;
+  with_scale.alignment = AlignmentKind::sim3;
+  EXPECT_NEAR(evaluate(truth, pipeline.trajectory(), with_scale).alignment.scale, 1.0, 0.02);
+  EXPECT_NEAR(evaluate(truth, pipeline.keyframe_trajectory(), with_scale).alignment.scale, 1.0, 0.02);
+  EXPECT_LT(evaluate(truth, pipeline.trajectory(), {}).absolute_error.rmse, 0.006)
+      << "frames between keyframes as well";
+}
+
 }  // namespace
 }  // namespace holdfast
