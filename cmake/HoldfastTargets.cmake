@@ -27,7 +27,8 @@ function(holdfast_target_defaults target)
   # -ffp-contract=off: the same sums on every processor, whatever the compiler could fuse.
   target_compile_options(${target} PRIVATE -ffp-contract=off)
   if(CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # Eigen fuses by itself where this says that the processor can, which every aarch64 processor can.
+    # Eigen fuses by itself where this says that the processor can, which every aarch64 processor can. Its large matrix
+    # products do so all the same (docs/arm.md).
     target_compile_options(${target} PRIVATE -U__ARM_FEATURE_FMA)
   endif()
   if(HOLDFAST_SANITIZE)

@@ -4,25 +4,68 @@
 #include <cstdint>
 #include <cstring>
 
+#define HOLDFAST_INLINE __attribute__((always_inline)) static inline
+
+// Functions that return vectors are always inlined, so that none is called with another set of instructions.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 namespace holdfast {
 
-/// Eight words of 16 bits, with which compilers compute at once on every processor.
+/// Words of 16 bits, with which compilers compute at once, by the instructions of the function into which a kernel is
+/// inlined. Every processor has instructions for eight.
 using EightWords = std::int16_t __attribute__((vector_size(16)));
+using SixteenWords = std::int16_t __attribute__((vector_size(32)));
+using ThirtyTwoWords = std::int16_t __attribute__((vector_size(64)));
 
-inline EightWords words_at(const std::int16_t* values) {
-  EightWords result;
-  std::memcpy(&result, values, sizeof result);
-  return result;
+/// Four words, and the fractional numbers for which every processor has instructions.
+using FourWords = std::int16_t __attribute__((vector_size(8)));
+using FourFloats = float __attribute__((vector_size(16)));
+
+/// As many bytes, whole numbers and fractional ones.
+template <class Words>
+struct LanesOf;
+template <>
+struct LanesOf<EightWords> {
+  using Bytes = std::uint8_t __attribute__((vector_size(8)));
+  using Integers = std::int32_t __attribute__((vector_size(32)));
+  using Floats = float __attribute__((vector_size(32)));
+};
+template <>
+struct LanesOf<SixteenWords> {
+  using Bytes = std::uint8_t __attribute__((vector_size(16)));
+  using Integers = std::int32_t __attribute__((vector_size(64)));
+  using Floats = float __attribute__((vector_size(64)));
+};
+template <>
+struct LanesOf<ThirtyTwoWords> {
+  using Bytes = std::uint8_t __attribute__((vector_size(32)));
+  using Integers = std::int32_t __attribute__((vector_size(128)));
+  using Floats = float __attribute__((vector_size(128)));
+};
+
+template <class Lanes, class Value>
+HOLDFAST_INLINE Lanes lanes_at(const Value* values) {
+  static_assert(sizeof(Lanes{}[0]) == sizeof(Value));
+  Lanes lanes;
+  std::memcpy(&lanes, values, sizeof lanes);
+  return lanes;
 }
 
-/// Eight neighbouring pixels.
-inline EightWords pixels_at(const std::uint8_t* pixels) {
-  using EightBytes = std::uint8_t __attribute__((vector_size(8)));
-  EightBytes bytes;
-  std::memcpy(&bytes, pixels, sizeof bytes);
-  return __builtin_convertvector(bytes, EightWords);
+template <class Lanes, class Value>
+HOLDFAST_INLINE void store(const Lanes& lanes, Value* values) {
+  static_assert(sizeof(Lanes{}[0]) == sizeof(Value));
+  std::memcpy(values, &lanes, sizeof lanes);
 }
 
-inline EightWords absolute(EightWords values) { return values < 0 ? -values : values; }
+/// As many neighbouring pixels as there are words.
+template <class Words = EightWords>
+HOLDFAST_INLINE Words pixels_at(const std::uint8_t* pixels) {
+  return __builtin_convertvector(lanes_at<typename LanesOf<Words>::Bytes>(pixels), Words);
+}
+
+template <class Words>
+HOLDFAST_INLINE Words absolute(const Words& values) {
+  return values < 0 ? -values : values;
+}
 
 }  // namespace holdfast

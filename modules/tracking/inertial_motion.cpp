@@ -159,6 +159,12 @@ std::optional<Eigen::Isometry3d> InertialMotion::step() const {
   return camera_pose(now_->pose()) * camera_pose(last_->pose()).inverse();
 }
 
+std::optional<Eigen::Vector3d> InertialMotion::turn_rate() const {
+  if (!is_reliable()) return std::nullopt;
+  const Eigen::Matrix3d R_camera_body = imu_->T_body_camera.linear().transpose() * now_->mounting();
+  return R_camera_body * now_->angular_velocity();
+}
+
 std::optional<InertialPrediction> InertialMotion::prediction() const {
   if (!is_reliable()) return std::nullopt;
   InertialPrediction result;

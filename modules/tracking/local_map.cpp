@@ -62,9 +62,20 @@ void LocalMap::collect_points(const Map& map) {
   points_.clear();
   index_of_slot_.assign(map.points().slot_count(), -1);
   std::erase_if(keyframes_, [&](KeyFrameId id) { return map.find_keyframe(id) == nullptr; });
-  for (const MapPointId id : points_seen_by(map, keyframes_)) {
-    index_of_slot_[id.slot] = static_cast<std::int32_t>(points_.size());
-    points_.add(id, map.point(id));
+  const std::vector<MapPointId> ids = points_seen_by(map, keyframes_);
+  // Points lie anywhere in memory, so that each is fetched before the ones ahead of it are copied.
+  std::vector<const MapPoint*> seen;
+  seen.reserve(ids.size());
+  for (const MapPointId id : ids) {
+    seen.push_back(&map.point(id));
+    __builtin_prefetch(&seen.back()->position);
+    __builtin_prefetch(&seen.back()->descriptor);
+  }
+  constexpr std::size_t ahead = 8;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (i + ahead < ids.size()) __builtin_prefetch(seen[i + ahead]->descriptor.row(0));
+    index_of_slot_[ids[i].slot] = static_cast<std::int32_t>(i);
+    points_.add(ids[i], *seen[i]);
   }
   visible_.assign(points_.size(), 0);
   found_.assign(points_.size(), 0);

@@ -7,6 +7,7 @@
 #include <string>
 #include <thread>
 
+#include "eight_words.hpp"
 #include "holdfast/core/depth_noise.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/size_text.hpp"
@@ -31,12 +32,18 @@ void PairDepth::check_images(const SensorFrame& sensor_frame) const {
 }
 
 cv::Mat PairDepth::begin(const SensorFrame& sensor_frame, const cv::Mat& grey) {
-  const cv::Mat& right = sensor_frame.right;
-  if (right.channels() == 3) cv::cvtColor(right, converted_, cv::COLOR_BGR2GRAY);
   left_ = grey;
-  right_ = right.channels() == 3 ? converted_ : right;
+  right_ = sensor_frame.right;
   image_.reset();
   return parts_.is_dense ? image() : cv::Mat();
+}
+
+const cv::Mat& PairDepth::grey_right() {
+  if (right_.channels() == 3) {
+    cv::cvtColor(right_, converted_, cv::COLOR_BGR2GRAY);
+    right_ = converted_;
+  }
+  return right_;
 }
 
 const cv::Mat& PairDepth::image() {
@@ -46,19 +53,34 @@ const cv::Mat& PairDepth::image() {
 
 const cv::Mat& PairDepth::corrected_right() {
   const PairErrors errors = parts_.calibration != nullptr ? parts_.calibration->errors() : PairErrors();
-  if (errors == PairErrors()) return right_;
+  const cv::Mat& right = grey_right();
+  if (errors == PairErrors()) return right;
   if (map_x_.empty() || !(errors == errors_)) {
     errors_ = errors;
-    map_x_.create(right_.size(), CV_32FC1), map_y_.create(right_.size(), CV_32FC1);
-    for (int y = 0; y < right_.rows; ++y)
-      for (int x = 0; x < right_.cols; ++x) {
+    map_x_.create(right.size(), CV_32FC1), map_y_.create(right.size(), CV_32FC1);
+    for (int y = 0; y < right.rows; ++y)
+      for (int x = 0; x < right.cols; ++x) {
         map_x_.ptr<float>(y)[x] = static_cast<float>(x + errors.column(camera_, x, y));
         map_y_.ptr<float>(y)[x] = static_cast<float>(y + errors.row(camera_, x, y));
       }
   }
-  cv::remap(right_, corrected_, map_x_, map_y_, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  cv::remap(right, corrected_, map_x_, map_y_, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
   return corrected_;
 }
+
+namespace {
+
+/// Depth of one or several disparities, and 0 where they are less than `least` or depth is too uncertain.
+template <class Floats>
+HOLDFAST_INLINE Floats depth_of(const Floats& disparity, float numerator, float least) {
+  constexpr float noise = 0.17F;  // px; standard deviation of disparities
+  const auto is_measured = disparity >= least;
+  const Floats z = numerator / (is_measured ? disparity : Floats{} + 1.0F);
+  const auto is_certain = z * noise <= (depth_noise::farther.offset + depth_noise::farther.slope * z) * disparity;
+  return (is_measured & is_certain) ? z : Floats{};
+}
+
+}  // namespace
 
 cv::Mat PairDepth::compute_image() {
   if (parts_.settings.dense == DenseStereoMethod::off) return {};
@@ -67,30 +89,32 @@ cv::Mat PairDepth::compute_image() {
     parts_.dense = own_dense_.get();
   }
   parts_.dense->match(left_, corrected_right(), disparity_);
-  constexpr float noise = 0.17F;  // px; standard deviation of disparities
+  constexpr int lanes = sizeof(FourFloats) / sizeof(float);
   cv::Mat depth(left_.size(), CV_32FC1);
   const auto numerator = static_cast<float>(fx_baseline_);
   const auto least = static_cast<float>(parts_.settings.minimum_disparity);
   for (int row = 0; row < depth.rows; ++row) {
     const float* from = disparity_.ptr<float>(row);
     float* to = depth.ptr<float>(row);
-    for (int column = 0; column < depth.cols; ++column) {
-      const float z = from[column] >= least ? numerator / from[column] : 0.0F;
-      to[column] = z * noise <= depth_noise::farther(z) * from[column] ? z : 0.0F;
-    }
+    int column = 0;
+    for (; column + lanes <= depth.cols; column += lanes)
+      store(depth_of(lanes_at<FourFloats>(from + column), numerator, least), to + column);
+    for (; column < depth.cols; ++column) to[column] = depth_of(from[column], numerator, least);
   }
   return depth;
 }
 
 void PairDepth::extract(const cv::Mat& grey, const cv::Mat& ignore, FeatureExtractor& extractor, Frame& frame) {
-  if (parts_.right_features == nullptr || std::thread::hardware_concurrency() < 2) {
+  static const unsigned cores = std::thread::hardware_concurrency();  // reads a file
+  if (parts_.right_features == nullptr || cores < 2) {
     extractor.extract(grey, ignore, frame.features);
-    (parts_.right_features != nullptr ? *parts_.right_features : extractor).extract(right_, cv::Mat(), right_features_);
+    (parts_.right_features != nullptr ? *parts_.right_features : extractor)
+        .extract(grey_right(), cv::Mat(), right_features_);
     return;
   }
   std::future<void> other = std::async(std::launch::async, [&] {
     name_this_thread("right features");
-    parts_.right_features->extract(right_, cv::Mat(), right_features_);
+    parts_.right_features->extract(grey_right(), cv::Mat(), right_features_);
   });
   extractor.extract(grey, ignore, frame.features);
   other.get();
@@ -98,13 +122,13 @@ void PairDepth::extract(const cv::Mat& grey, const cv::Mat& ignore, FeatureExtra
 
 void PairDepth::read(const SensorFrame&, Frame& frame) {
   if (parts_.calibration == nullptr) {
-    matcher_.match(left_, right_, right_features_, frame);
+    matcher_.match(left_, grey_right(), right_features_, frame);
     return;
   }
-  matcher_.match(left_, right_, right_features_, frame, parts_.calibration->begin_frame());
+  matcher_.match(left_, grey_right(), right_features_, frame, parts_.calibration->begin_frame());
   // Rows that turn out wrong make columns wrong, because patches are compared in them.
   if (parts_.calibration->learn_rows(matcher_.row_differences()))
-    matcher_.match(left_, right_, right_features_, frame, parts_.calibration->begin_frame());
+    matcher_.match(left_, grey_right(), right_features_, frame, parts_.calibration->begin_frame());
 }
 
 bool PairDepth::is_pair_exchanged(const Frame& frame) {
@@ -119,7 +143,7 @@ bool PairDepth::is_pair_exchanged(const Frame& frame) {
   other.pyramid = frame.pyramid;
   other.features = right_features_;
   other.x = right_features_.x, other.y = right_features_.y;
-  matcher_.match(right_, left_, frame.features, other);
+  matcher_.match(grey_right(), left_, frame.features, other);
   const std::size_t count = with_depth(other);
   return count >= least_features && count >= least_ratio * with_depth(frame);
 }

@@ -46,7 +46,6 @@ void SemiGlobalStereo::match(const cv::Mat& left, const cv::Mat& right, cv::Mat&
   right.convertTo(right_, CV_8U, 1.0, brightness_difference());
   costs_.begin(left, right_, half_disparity_);
   refine(disparity);
-  remove_occluded(disparity);
 }
 
 int SemiGlobalStereo::needed_disparities() {
@@ -98,60 +97,115 @@ int SemiGlobalStereo::brightness_difference() const {
   return total == 0 ? 0 : level - levels;
 }
 
-void SemiGlobalStereo::refine(cv::Mat& disparity) {
-  constexpr int candidates = WindowCosts::candidates;
-  constexpr int distinct = WindowCosts::window * WindowCosts::window / 4;  // a quarter of a grey level
-  const int rows = right_.rows, columns = right_.cols, last = half_disparity_.cols - 1;
-  disparity.create(rows, columns, CV_32FC1);
-  least_.create(rows, columns, CV_16UC1);
-  for (int row = 0; row < rows; ++row) {
-    const std::int16_t* half = WindowCosts::half_row(half_disparity_, row);
-    const WindowCosts::Lanes* costs = costs_.next_row();
-    float* to = disparity.ptr<float>(row);
-    auto* least_to = least_.ptr<std::uint16_t>(row);
-    for (int column = 0; column < columns; ++column) {
-      to[column] = 0.0F;
-      least_to[column] = 0;
-      const int found = half[std::min(column / 2, last)];
-      if (found < eighths) continue;
-      const int best = WindowCosts::least_lane(costs[column]);
-      if (best == 0 || best + 1 == candidates) continue;
-      const WindowCosts::Lanes cost = costs[column];
-      const int least = cost[best], before = cost[best + 1] - least, after = cost[best - 1] - least,
-                rise = std::max(before, after);
-      if (rise <= distinct) continue;
-      const float offset = 0.5F * static_cast<float>(before - after) / static_cast<float>(rise);
-      const float value = static_cast<float>(found) / eighths + static_cast<float>(WindowCosts::reach - best) + offset;
-      to[column] = std::max(value, 0.0F);
-      least_to[column] = static_cast<std::uint16_t>(least);
+namespace {
+
+constexpr int lanes = 8;
+/// Eight pixels with eight costs each, as eight costs of eight pixels.
+HOLDFAST_INLINE void transpose(EightWords* rows) {
+  for (int half = 0; half < 3; ++half) {
+    EightWords result[lanes];
+    for (int k = 0; k < lanes / 2; ++k) {
+      result[2 * k] = __builtin_shufflevector(rows[k], rows[k + 4], 0, 8, 1, 9, 2, 10, 3, 11);
+      result[2 * k + 1] = __builtin_shufflevector(rows[k], rows[k + 4], 4, 12, 5, 13, 6, 14, 7, 15);
     }
+    std::copy_n(result, lanes, rows);
   }
 }
 
-void SemiGlobalStereo::remove_occluded(cv::Mat& disparity) {
-  constexpr float tolerance = 1.5F;  // px; a slanted surface shows several disparities in one column
-  const int columns = disparity.cols;
-  places_.resize(static_cast<std::size_t>(columns));
-  for (int row = 0; row < disparity.rows; ++row) {
-    float* values = disparity.ptr<float>(row);
-    for (int column = 0; column < columns; ++column)
-      places_[static_cast<std::size_t>(column)] = std::max(column - static_cast<int>(values[column] + 0.5F), 0);
-    const std::uint16_t* costs = least_.ptr<std::uint16_t>(row);
-    best_.assign(static_cast<std::size_t>(columns), -1);
-    const auto best_of = [&](int column) -> int& {
-      return best_[static_cast<std::size_t>(places_[static_cast<std::size_t>(column)])];
-    };
-    for (int column = 0; column < columns; ++column) {
-      if (values[column] == 0.0F) continue;
-      int& best = best_of(column);
-      if (best < 0 || costs[column] < costs[best]) best = column;
-    }
-    for (int column = 0; column < columns; ++column)
-      if (values[column] > 0.0F && std::abs(values[best_of(column)] - values[column]) > tolerance)
-        removed_.push_back(column);
-    for (const int column : removed_) values[column] = 0.0F;
-    removed_.clear();
+/// Of eight pixels: the least cost, its candidate, and how much more the neighbours' costs are.
+struct Minima {
+  EightWords least, best, before, after;
+};
+
+HOLDFAST_INLINE Minima find_minima(const WindowCosts::Lanes* costs) {
+  EightWords cost[lanes];
+  std::copy_n(costs, lanes, cost);
+  transpose(cost);
+  // Of equal costs that of the largest lane.
+  Minima minima{cost[0], {}, cost[1], {}};
+  for (std::int16_t k = 1; k < WindowCosts::candidates; ++k) {
+    const EightWords is_less = cost[k] <= minima.least;
+    minima.least = is_less ? cost[k] : minima.least;
+    minima.best = is_less ? EightWords{} + k : minima.best;
+    minima.before = is_less ? cost[k + 1] : minima.before;
+    minima.after = is_less ? cost[k - 1] : minima.after;
   }
+  minima.before -= minima.least;
+  minima.after -= minima.least;
+  return minima;
+}
+
+/// Sets the refined disparities of eight pixels, 0 where there is none, and their least costs, -1 where there is none.
+/// `found_at`: disparities of half the resolution [1/8 px].
+HOLDFAST_INLINE void refine_eight(const WindowCosts::Lanes* costs, const std::int16_t* found_at, float* disparity,
+                                  std::int16_t* least) {
+  constexpr std::int16_t distinct = WindowCosts::window * WindowCosts::window / 4;  // a quarter of a grey level
+  const Minima minima = find_minima(costs);
+  const EightWords rise = minima.before > minima.after ? minima.before : minima.after;
+  const EightWords found = lanes_at<EightWords>(found_at);
+  const EightWords is_known = (found >= std::int16_t{eighths}) & (minima.best != 0) &
+                              (minima.best != std::int16_t{WindowCosts::candidates - 1}) & (rise > distinct);
+  const EightWords difference = minima.before - minima.after,
+                   divisor = is_known ? rise : EightWords{} + std::int16_t{1},
+                   shift = std::int16_t{WindowCosts::reach} - minima.best;
+  EightWords is_positive;
+  for (int half = 0; half < lanes; half += lanes / 2) {
+    const auto numbers = [half](const EightWords& words) __attribute__((always_inline)) {
+      const FourWords part = half == 0 ? __builtin_shufflevector(words, words, 0, 1, 2, 3)
+                                       : __builtin_shufflevector(words, words, 4, 5, 6, 7);
+      return __builtin_convertvector(part, FourFloats);
+    };
+    const FourFloats offset = 0.5F * numbers(difference) / numbers(divisor);
+    const FourFloats value = numbers(found) / static_cast<float>(eighths) + numbers(shift) + offset;
+    const auto known = (numbers(is_known) != 0.0F) & (value > 0.0F);
+    store(known ? value : FourFloats{}, disparity + half);
+    for (int k = 0; k < lanes / 2; ++k) is_positive[half + k] = static_cast<std::int16_t>(known[k]);
+  }
+  store((minima.least & is_positive) | ~is_positive, least);
+}
+
+}  // namespace
+
+void SemiGlobalStereo::refine(cv::Mat& disparity) {
+  const int rows = right_.rows, columns = right_.cols, last = half_disparity_.cols - 1;
+  const std::size_t padded = static_cast<std::size_t>(columns + lanes - 1) / lanes * lanes;
+  disparity.create(rows, columns, CV_32FC1);
+  found_.resize(padded), least_.resize(padded), refined_.resize(padded);
+  for (int row = 0; row < rows; ++row) {
+    const std::int16_t* half = WindowCosts::half_row(half_disparity_, row);
+    for (int k = 0; k <= last; ++k)
+      found_[static_cast<std::size_t>(2 * k)] = found_[static_cast<std::size_t>(2 * k + 1)] = half[k];
+    if (columns % 2 != 0) found_[static_cast<std::size_t>(columns - 1)] = half[last];
+    const WindowCosts::Lanes* costs = costs_.next_row();
+    for (std::size_t column = 0; column < padded; column += lanes)
+      refine_eight(costs + column, found_.data() + column, refined_.data() + column, least_.data() + column);
+    remove_occluded(columns, disparity.ptr<float>(row));
+  }
+}
+
+void SemiGlobalStereo::remove_occluded(int columns, float* disparity) {
+  constexpr float tolerance = 1.5F;  // px; a slanted surface shows several disparities in one column
+  constexpr std::uint32_t column_bits = 16, column_mask = (1U << column_bits) - 1;
+  const auto count = static_cast<std::size_t>(columns);
+  places_.resize(count), shown_.resize(refined_.size());
+  best_.assign(count, ~std::uint32_t{0});
+  for (std::size_t column = 0; column < count; ++column)
+    places_[column] = std::max(static_cast<int>(column) - static_cast<int>(refined_[column] + 0.5F), 0);
+  // The least cost, and of equal ones the left column, in one number; pixels without a disparity have the largest one.
+  for (std::size_t column = 0; column < count; ++column) {
+    std::uint32_t& best = best_[static_cast<std::size_t>(places_[column])];
+    const auto cost = static_cast<std::uint16_t>(least_[column]);
+    best = std::min(best, std::uint32_t{cost} << column_bits | static_cast<std::uint32_t>(column));
+  }
+  for (std::size_t column = 0; column < count; ++column)
+    shown_[column] = refined_[best_[static_cast<std::size_t>(places_[column])] & column_mask];
+  for (std::size_t column = 0; column < refined_.size(); column += lanes / 2) {
+    const FourFloats value = lanes_at<FourFloats>(refined_.data() + column),
+                     difference = lanes_at<FourFloats>(shown_.data() + column) - value;
+    const auto is_hidden = (difference > tolerance) | (difference < -tolerance);
+    store(is_hidden ? FourFloats{} : value, refined_.data() + column);
+  }
+  std::copy_n(refined_.begin(), columns, disparity);
 }
 
 }  // namespace holdfast

@@ -37,7 +37,8 @@ class SemiGlobalStereo final : public DenseStereo {
   /// exposures differ.
   int brightness_difference() const;
   void refine(cv::Mat& disparity);
-  void remove_occluded(cv::Mat& disparity);
+  /// Copies a row of refined_ but for what another pixel hides in the right image.
+  void remove_occluded(int columns, float* disparity);
 
   int disparities_;  ///< largest number at half the resolution
   cv::Ptr<cv::StereoSGBM> matcher_, coarse_matcher_;
@@ -46,10 +47,13 @@ class SemiGlobalStereo final : public DenseStereo {
   cv::Mat half_left_, half_right_, half_disparity_;  // the last one 16SC1 [1/16 px]
   cv::Mat right_;                                    // 8UC1, of the mean of the left image
   WindowCosts costs_;
-  cv::Mat least_;  // 16UC1: the least sum of differences of each pixel
-  // Of a row: the column in the right image; the column of the left image with the least sum, by column of the right
-  // image; columns to remove.
-  std::vector<int> places_, best_, removed_;
+  // Of a row: the disparity at half the resolution, the least sum of differences, the refined disparity, that of the
+  // pixel that the right image shows, and the column in the right image; by column of the right image the least sum and
+  // the column of the left image that has it.
+  std::vector<std::int16_t> found_, least_;
+  std::vector<float> refined_, shown_;
+  std::vector<int> places_;
+  std::vector<std::uint32_t> best_;
 };
 
 }  // namespace holdfast

@@ -122,7 +122,7 @@ void Tracker::found_pose(FrameResult& result) {
   const StageTimer timer(result.times, "keyframe");
   const bool on_map = result.inliers >= context_.settings.minimum_inliers;
   if (on_map && context_.history.has_previous())
-    if (const auto motion = context_.motion_by(context_.measured_step()))
+    if (const auto motion = context_.motion_at_exposure(context_.measured_step()))
       context_.shutter.learn(*motion, context_.map, context_.current);
   result.is_keyframe = !context_.localises_only && state_ != TrackerState::unconfirmed &&
                        frame_tracker_.has_own_features() &&

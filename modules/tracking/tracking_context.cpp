@@ -45,11 +45,21 @@ std::optional<FrameMotion> TrackingContext::motion_by(const Eigen::Isometry3d& s
   return FrameMotion{geometry::log_se3(step), *since_previous};
 }
 
+std::optional<FrameMotion> TrackingContext::motion_at_exposure(const Eigen::Isometry3d& step) const {
+  std::optional<FrameMotion> motion = motion_by(step);
+  if (!motion) return motion;
+  if (const std::optional<Eigen::Vector3d> rate = inertia.turn_rate())
+    motion->tangent.tail<3>() = -motion->interval * *rate;  // the world turns against the camera
+  else if (history.has_velocity())
+    motion = motion->at_end(geometry::log_se3(history.predicted_step(current.timestamp)));
+  return motion;
+}
+
 void TrackingContext::place_features(const SensorFrame& sensor_frame, const Eigen::Isometry3d& step,
                                      StageTimes& times) {
   constexpr double min_delay = 1e-4;  // s
   const bool aligns_depth = settings.depth_alignment && std::abs(sensor_frame.depth_delay) >= min_delay;
-  if (const std::optional<FrameMotion> motion = motion_by(step))
+  if (const std::optional<FrameMotion> motion = motion_at_exposure(step))
     builder.place_features(sensor_frame, *motion, aligns_depth, shutter, map, current, times);
 }
 

@@ -20,14 +20,14 @@ void WindowCosts::begin(const cv::Mat& left, const cv::Mat& right, const cv::Mat
   const auto columns = static_cast<std::size_t>(left.cols);
   right_row_.resize(columns + sizeof(Lanes));
   differences_.resize(kept_rows * columns);
-  costs_.resize(columns);
+  costs_.resize(columns + 7);
   column_sums_.assign(columns, Lanes{});
   row_ = compared_ = 0;
   for (int row = -radius; row < radius; ++row) add(row, 1);
 }
 
 WindowCosts::Lanes* WindowCosts::differences_of(int row) {
-  return differences_.data() + static_cast<std::size_t>(row % kept_rows) * costs_.size();
+  return differences_.data() + static_cast<std::size_t>(row % kept_rows) * column_sums_.size();
 }
 
 void WindowCosts::compare(int row) {

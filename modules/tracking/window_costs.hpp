@@ -26,19 +26,9 @@ class WindowCosts {
   /// `left`, `right`: 8UC1, of the same mean brightness. `half_disparity`: 16SC1 of half the size
   /// [1/8 px of the full resolution]; less than 1 px: unknown. They must not change until the last row.
   void begin(const cv::Mat& left, const cv::Mat& right, const cv::Mat& half_disparity);
-  /// The costs of the next row, by column; valid until the next call. At most as many calls as there are rows.
+  /// The costs of the next row, by column, and seven more that are of no use; valid until the next call. At most as
+  /// many calls as there are rows.
   const Lanes* next_row();
-
-  /// The candidate with the least cost; of equal ones, that of the largest lane.
-  static int least_lane(Lanes costs) {
-    static_assert(candidates == 5);
-    constexpr Lanes known = {-1, -1, -1, -1, -1, 0, 0, 0}, place = {7, 6, 5, 4, 3, 0x7fff, 0x7fff, 0x7fff};
-    Lanes key = ((costs << 3) & known) | place;  // costs are less than 2^12
-    key = least(key, __builtin_shufflevector(key, key, 4, 5, 6, 7, 0, 1, 2, 3));
-    key = least(key, __builtin_shufflevector(key, key, 2, 3, 0, 1, 6, 7, 4, 5));
-    key = least(key, __builtin_shufflevector(key, key, 1, 0, 3, 2, 5, 4, 7, 6));
-    return 7 - (key[0] & 7);
-  }
 
   /// The disparities at half the resolution that belong to a row of the full one.
   static const std::int16_t* half_row(const cv::Mat& half, int row) {
@@ -47,8 +37,6 @@ class WindowCosts {
 
  private:
   static constexpr int kept_rows = 16, radius = window / 2;
-
-  static Lanes least(Lanes a, Lanes b) { return a < b ? a : b; }
 
   Lanes* differences_of(int row);
   void compare(int row);

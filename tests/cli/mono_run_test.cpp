@@ -74,11 +74,14 @@ TEST(MonoRun, MasksKeepPeopleOutAndTwiceTheSame) {
   EXPECT_EQ(program.text("a/map.hfm"), program.text("b/map.hfm"));
 }
 
+/// In threads, the load of the machine decides which frames become keyframes: errors were 0.005 to 0.068 m in 33 runs,
+/// and 0.12 to 0.20 m without masks.
 TEST(MonoRun, MasksWorkInThreads) {
   const test::Program program;
   const nlohmann::json summary = run_mono(program, "out", walkers("threaded"));
   EXPECT_GE(summary.at("frames").at("poses"), 100);
-  EXPECT_LE(error(summary), 0.05);
+  EXPECT_GE(summary.at("masks").at("segmented"), 80);
+  EXPECT_LE(error(summary), 0.1);
   EXPECT_EQ(summary.at("sensor"), "mono");
 }
 

@@ -126,6 +126,20 @@ struct InertialBench {
   double time = 0.0;
 };
 
+TEST(InertialMotion, KnowsTheTurnOfTheCameraAtEachFrame) {
+  InertialBench bench(4.0, false);
+  bench.track(1.5);
+  EXPECT_FALSE(bench.motion.turn_rate());
+  bench.track(3.5);
+  bench.begin();
+  ASSERT_TRUE(bench.motion.turn_rate());
+  constexpr double step = 1e-4;  // s
+  const Eigen::Matrix3d before = bench.pose(bench.time - step).linear(), after = bench.pose(bench.time + step).linear();
+  const Eigen::Vector3d rate = geometry::log_so3(Eigen::Matrix3d(before * after.transpose())) / (2.0 * step);
+  EXPECT_GT(rate.norm(), 0.1);
+  EXPECT_LT((*bench.motion.turn_rate() - rate).norm(), 0.02);
+}
+
 TEST(InertialMotion, StartsInMotionAndAtRest) {
   for (const bool rest : {false, true}) {
     InertialBench bench(3.0, rest);

@@ -113,6 +113,23 @@ TEST_F(RollingShutterTest, FeaturesWithoutDepthHaveThatOfTheirMapPoints) {
   EXPECT_LT(largest_error(frame), 0.02);
 }
 
+/// A camera that turns faster and faster: the step between two exposures has the rate of half an interval ago.
+TEST_F(RollingShutterTest, TheRotationAtTheEndOfAStepFollowsItsChange) {
+  const Eigen::Vector3d rate(0.5, 1.5, -0.8), change = Eigen::Vector3d(6.0, -20.0, 10.0);  // rad/s, rad/s^2
+  const auto step_before = [&](double seconds) { return motion_of({0.3, 0.0, 0.0}, rate - seconds * change); };
+  const FrameMotion step = step_before(interval / 2);
+  const FrameMotion now = step.at_end(step_before(1.5 * interval).tangent);
+  const FrameMotion expected = step_before(0.2 * interval);
+  EXPECT_NEAR((now.tangent - expected.tangent).norm(), 0.0, 1e-12);
+  const auto error = [&](const FrameMotion& motion) {
+    Frame frame = take(Eigen::Isometry3d::Identity(), motion_of({0.3, 0.0, 0.0}, rate));
+    RollingShutter(RollingShutterMode::fixed, readout).correct(motion, Map(), frame);
+    return largest_error(frame);
+  };
+  EXPECT_GT(error(step), 2.0);
+  EXPECT_LT(error(now), 0.45 * error(step));
+}
+
 TEST_F(RollingShutterTest, IsOffWithoutReadoutTime) {
   EXPECT_FALSE(RollingShutter(RollingShutterMode::fixed, 0.0).is_active());
   EXPECT_FALSE(RollingShutter(RollingShutterMode::off, readout).is_active());

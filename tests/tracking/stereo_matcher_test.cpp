@@ -14,6 +14,7 @@
 #include "holdfast/core/stereo_calibration.hpp"
 #include "holdfast/simulation/simulator.hpp"
 #include "holdfast/tracking/pair_depth.hpp"
+#include "semi_global_stereo.hpp"
 
 namespace holdfast {
 namespace {
@@ -308,6 +309,41 @@ TEST_F(StereoMatcherTest, AnotherDenseMatcherTakesThePlaceOfTheBuiltInOne) {
   SameDisparity same;
   PairDepth stereo(*frame_.camera, {.dense = &same});
   EXPECT_EQ(cv::countNonZero(depth_image(stereo, left_, right_) == 2.0F), width * height);
+}
+
+TEST(DenseDepth, IsFoundUpToTheLastColumnAndEachRightPixelShowsOneSurface) {
+  constexpr int columns = 323, rows = 91, far = 6, near = 24;  // px; the width is no multiple of vectors
+  Random random(11);
+  cv::Mat left(rows, columns, CV_8UC1);
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column)
+      left.at<std::uint8_t>(row, column) = static_cast<std::uint8_t>(random.next() % 200);
+  cv::GaussianBlur(left, left, cv::Size(), 1.5);
+  cv::normalize(left, left, 10, 200, cv::NORM_MINMAX);
+  cv::Mat right;
+  cv::warpAffine(left, right, cv::Matx23f(1, 0, -far, 0, 1, 0), left.size(), cv::INTER_NEAREST, cv::BORDER_REFLECT);
+  const cv::Rect object(120, 20, 80, 50);
+  left(object).copyTo(right(object - cv::Point(near, 0)));
+  cv::Mat disparity;
+  SemiGlobalStereo(40.0, columns).match(left, right, disparity);
+  const cv::Mat last = disparity(cv::Rect(columns - 7, 0, 7, rows));
+  EXPECT_GT(cv::countNonZero(cv::abs(last - far) < 0.5), static_cast<int>(last.total() * 8 / 10));
+  const cv::Mat middle = disparity(cv::Rect(140, 30, 40, 30));
+  EXPECT_GT(cv::countNonZero(cv::abs(middle - near) < 0.5), static_cast<int>(middle.total() * 8 / 10));
+  // Left of the object the right image shows the object, so that the surface behind has no disparity.
+  const cv::Mat hidden = disparity(cv::Rect(120 - near + far + 4, 30, near - far - 8, 30));
+  EXPECT_LT(cv::countNonZero(cv::abs(hidden - far) < 0.5), static_cast<int>(hidden.total() / 10));
+  for (int row = 0; row < rows; ++row) {
+    std::vector<float> nearest(columns, 0.0F), farthest(columns, 1e9F);
+    for (int column = 0; column < columns; ++column) {
+      const float value = disparity.at<float>(row, column);
+      if (value == 0.0F) continue;
+      const auto place = static_cast<std::size_t>(std::max(column - static_cast<int>(value + 0.5F), 0));
+      nearest[place] = std::max(nearest[place], value), farthest[place] = std::min(farthest[place], value);
+    }
+    for (int place = 0; place < columns; ++place)
+      EXPECT_LE(nearest[static_cast<std::size_t>(place)] - farthest[static_cast<std::size_t>(place)], 3.0F) << row;
+  }
 }
 
 TEST(DenseDepth, OfASimulatedPairAgreesWithTheTrueDepth) {

@@ -63,10 +63,11 @@ class InertialFilter {
   Deviations deviations() const;
   const Eigen::Matrix3d& mounting() const { return mounting_; }
   double time_offset() const { return time_offset_; }
+  /// At the end of the last measurements, without the bias [rad/s].
+  Eigen::Vector3d angular_velocity() const { return measured_rate_ - state_.bias.gyroscope; }
 
  private:
   using Observation = Eigen::Matrix<double, 6, 22>;
-  Eigen::Vector3d angular_velocity() const { return measured_rate_ - state_.bias.gyroscope; }
   Observation observation() const;
   Eigen::Matrix<double, 6, 1> innovation(const Eigen::Isometry3d& measured) const;
 

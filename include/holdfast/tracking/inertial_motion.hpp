@@ -53,6 +53,8 @@ class InertialMotion {
   bool is_reliable() const { return now_.has_value() && confirmations_ >= required_confirmations; }
   /// T_current_previous from the frame before, whether it had a pose or not; empty unless reliable.
   std::optional<Eigen::Isometry3d> step() const;
+  /// Angular velocity of the camera, in its frame, at the exposure of the current frame [rad/s]; empty unless reliable.
+  std::optional<Eigen::Vector3d> turn_rate() const;
   /// Empty unless reliable.
   std::optional<InertialPrediction> prediction() const;
   /// Whether a pose is farther from the prediction than both their uncertainties and `factor` allow; false unless

@@ -53,6 +53,9 @@ class PairDepth final : public DepthProvider {
   void add_image(SensorFrame& sensor_frame) override { sensor_frame.depth = image(); }
 
  private:
+  /// The right image, converted at the first call for a frame: by the thread that extracts its features, if there is
+  /// one.
+  const cv::Mat& grey_right();
   /// The depth image, computed at the first call for a frame.
   const cv::Mat& image();
   cv::Mat compute_image();
@@ -64,7 +67,7 @@ class PairDepth final : public DepthProvider {
   double fx_baseline_;
   StereoMatcher matcher_;
   Features right_features_;
-  cv::Mat left_, right_;  // grey images of the frame
+  cv::Mat left_, right_;  // images of the frame: grey, and that of the sensor until grey_right() converts it
   cv::Mat converted_;     // buffer, because images of a sensor frame must not be written to
   std::optional<cv::Mat> image_;
   std::unique_ptr<DenseStereo> own_dense_;

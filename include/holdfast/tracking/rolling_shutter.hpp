@@ -17,6 +17,18 @@ struct FrameMotion {
 
   /// T_later_current by constant velocity, for a time `seconds` after the current frame.
   Eigen::Isometry3d during(double seconds) const { return geometry::exp_se3(seconds / interval * tangent); }
+
+  /// The motion that the velocity at the end of this step would make in its interval, `previous` being the step before
+  /// it, at the same interval: the rotation is extrapolated from the middle of the step, since a camera in a hand turns
+  /// back and forth within few frames. By exact steps that would be half an interval (backward difference of second
+  /// order); the noise of measured ones grows with it, so that it is less. The translation stays, whose noise is larger
+  /// than what it changes in this time.
+  FrameMotion at_end(const geometry::Vector6d& previous) const {
+    constexpr double extrapolation = 0.3;  // intervals
+    FrameMotion motion = *this;
+    motion.tangent.tail<3>() += extrapolation * (tangent - previous).tail<3>();
+    return motion;
+  }
 };
 
 /// Correction of the rolling shutter (Ringaby and Forssen, "Efficient Video Rectification and Stabilisation for

@@ -32,6 +32,11 @@ class StereoMatcher {
     std::uint32_t left, right;
     float distance;  // of the descriptors
   };
+  struct RightFeature {
+    float x, y;
+    int octave;
+    std::uint32_t index;
+  };
   void sort_by_row(const Features& features, int rows);
   void find_matches(const Frame& frame, const Features& right, float max_disparity, const PairErrors& errors);
   void keep_best_of_each_right_feature(const Features& right);
@@ -40,7 +45,8 @@ class StereoMatcher {
                float& difference) const;
 
   StereoSettings settings_;
-  std::vector<std::uint32_t> row_begin_, by_row_;  // right features of each row, by counting sort
+  std::vector<std::uint32_t> row_begin_;  // of by_row_, by counting sort
+  std::vector<RightFeature> by_row_;
   std::vector<std::uint32_t> candidates_;
   std::vector<float> distances_;
   std::vector<Match> matches_;

@@ -60,7 +60,10 @@ struct TrackingContext {
   std::optional<double> interval() const;
   /// The motion T_current_previous = step since the last tracked frame; empty if interval() is.
   std::optional<FrameMotion> motion_by(const Eigen::Isometry3d& step) const;
-  /// Corrects the features of the current frame for the motion `step` (FrameBuilder::place_features).
+  /// motion_by() this step, with the rotation at the exposure of the current frame: by the gyroscope if it is reliable,
+  /// or else by FrameMotion::at_end() if the frame before the previous one was tracked as well.
+  std::optional<FrameMotion> motion_at_exposure(const Eigen::Isometry3d& step) const;
+  /// Corrects the features of the current frame for motion_at_exposure(step) (FrameBuilder::place_features).
   void place_features(const SensorFrame& sensor_frame, const Eigen::Isometry3d& step, StageTimes& times);
   /// The submap in which the camera is tracked.
   std::uint32_t submap() const { return map.submap_of(reference_keyframe).value_or(0); }
