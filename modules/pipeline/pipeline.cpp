@@ -149,7 +149,8 @@ struct Pipeline::State {
   /// Whether one camera's map is finished and inertial measurements have not scaled it to metres.
   bool has_own_unit() const {
     const Map& whole = map.unshared();
-    return finished && parts.imu && parts.tracking.inertia && !whole.keyframes().empty() && !is_metric(whole);
+    return finished && !parts.localise_only && parts.imu && parts.tracking.inertia && !whole.keyframes().empty() &&
+           !is_metric(whole);
   }
   bool keeps_classes() const { return !parts.segmenter->classes().empty() && !parts.localise_only; }
   /// Throws InputError for a frame that cannot be processed; it leaves no trace: the next one may have its stamp.
@@ -164,6 +165,8 @@ struct Pipeline::State {
   /// After the last adjustment of the map, which places keyframes. `before`: the trajectory before it.
   void smooth_frames(const Trajectory& before) HOLDFAST_EXCLUDES(map);
   void smooth_trajectory() HOLDFAST_EXCLUDES(map);
+  /// What the finished map gets: metres, and classes of its points.
+  void complete_map() HOLDFAST_EXCLUDES(map);
   /// What the sensor of this pipeline has of a frame, in colour where a part needs that.
   SensorFrame used_images(const SensorFrame& given) const;
   /// Gives the frame that is tracked the depth image of its pair, if there is one and something needs it.
@@ -306,6 +309,13 @@ void Pipeline::State::smooth_trajectory() {
   flow.in_background([&](StageTimes& times) { tracker.smooth_trajectory(locked, times); });
 }
 
+void Pipeline::State::complete_map() {
+  const LockedStructure structure(map);
+  const LockedMap locked(map, LockPriority::background);
+  if (!parts.localise_only) make_metric(locked.map());
+  if (keeps_classes()) locked->classify_points();
+}
+
 Pipeline::Pipeline(PipelineParts parts) : state_(std::make_unique<State>(checked(std::move(parts)))) {}
 Pipeline::~Pipeline() {
   if (state_) interrupt();
@@ -353,6 +363,7 @@ FrameResult Pipeline::feed(const SensorFrame& given) {
 
 void Pipeline::finish() {
   State& s = *state_;
+  if (s.finished) return;
   s.flow.finish();
   s.finished = true;
   s.health.finish();
@@ -370,9 +381,8 @@ void Pipeline::finish() {
   s.flow.adjust_after_last_loop();
   s.smooth_frames(before);
   s.smooth_trajectory();
-  if (!s.parts.localise_only) make_metric(s.map.unshared());
+  s.complete_map();
   s.flow.finish_surface();
-  if (s.keeps_classes()) s.map.unshared().classify_points();
   for (const auto& observer : s.parts.observers) observer->on_finish(s.map.unshared());
 }
 

@@ -120,6 +120,7 @@ RunRecord run(BuiltPipeline& built, const Configuration& configuration, const Ru
   record.source = built.source->describe();
   record.camera = built.pipeline.camera();
   record.sensor = built.pipeline.sensor();
+  record.is_metric = scale_is_known(record.sensor);
   record.localised_only = options.pipeline.localise_only;
   record.warnings = configuration.warnings;
   add_warnings(record.warnings, built.warnings());

@@ -188,6 +188,7 @@ std::string run_json(const RunRecord& record) {
                {"machine", machine_json()},
                {"sequence", record.source.name},
                {"sensor", sensor_name(record.sensor)},
+               {"is_metric", record.is_metric},
                {"interrupted", record.was_interrupted}};
   json["failure"] = record.failure.empty() ? Json(nullptr) : Json(record.failure);
   Json& warnings = json["warnings"] = Json::array();

@@ -21,24 +21,27 @@ using ThirtyTwoWords = std::int16_t __attribute__((vector_size(64)));
 using FourWords = std::int16_t __attribute__((vector_size(8)));
 using FourFloats = float __attribute__((vector_size(16)));
 
-/// As many bytes, whole numbers and fractional ones.
+/// As many bytes, words without a sign, whole numbers and fractional ones.
 template <class Words>
 struct LanesOf;
 template <>
 struct LanesOf<EightWords> {
   using Bytes = std::uint8_t __attribute__((vector_size(8)));
+  using Unsigned = std::uint16_t __attribute__((vector_size(16)));
   using Integers = std::int32_t __attribute__((vector_size(32)));
   using Floats = float __attribute__((vector_size(32)));
 };
 template <>
 struct LanesOf<SixteenWords> {
   using Bytes = std::uint8_t __attribute__((vector_size(16)));
+  using Unsigned = std::uint16_t __attribute__((vector_size(32)));
   using Integers = std::int32_t __attribute__((vector_size(64)));
   using Floats = float __attribute__((vector_size(64)));
 };
 template <>
 struct LanesOf<ThirtyTwoWords> {
   using Bytes = std::uint8_t __attribute__((vector_size(32)));
+  using Unsigned = std::uint16_t __attribute__((vector_size(64)));
   using Integers = std::int32_t __attribute__((vector_size(128)));
   using Floats = float __attribute__((vector_size(128)));
 };

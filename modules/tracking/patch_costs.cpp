@@ -92,6 +92,7 @@ HOLDFAST_INLINE void compare(const Patches& patches, int* costs) {
   constexpr int lanes = sizeof(Words) / sizeof(std::int16_t);
   constexpr int most_differences = 65535 / 510;  // of which a sum fits into 16 bits
   using Integers = typename LanesOf<Words>::Integers;
+  using Unsigned = typename LanesOf<Words>::Unsigned;
   const int side = patches.side, shifts = patches.shifts;
   WordRows left, right;
   read<Words>(patches.left, 0, side, side, left);
@@ -104,13 +105,13 @@ HOLDFAST_INLINE void compare(const Patches& patches, int* costs) {
     Integers total{};
     for (int begin = 0; begin < side; begin += rows_at_once) {
       const int end = begin + rows_at_once < side ? begin + rows_at_once : side;
-      Words sum{};
+      Unsigned sum{};
       for (int row = begin; row < end; ++row) {
         const std::int16_t* a = left.rows[static_cast<std::size_t>(row)].data();
         const std::int16_t* b = right.rows[static_cast<std::size_t>(row)].data() + block;
-        for (int k = 0; k < side; ++k) sum += absolute<Words>(a[k] - mean - lanes_at<Words>(b + k));
+        for (int k = 0; k < side; ++k) sum += (Unsigned)absolute<Words>(a[k] - mean - lanes_at<Words>(b + k));
       }
-      total += __builtin_convertvector(sum, Integers) & 0xffff;
+      total += __builtin_convertvector(sum, Integers);
     }
     store(total, costs + block);
   }

@@ -48,11 +48,15 @@ std::optional<FrameMotion> TrackingContext::motion_by(const Eigen::Isometry3d& s
 std::optional<FrameMotion> TrackingContext::motion_at_exposure(const Eigen::Isometry3d& step) const {
   std::optional<FrameMotion> motion = motion_by(step);
   if (!motion) return motion;
-  if (const std::optional<Eigen::Vector3d> rate = inertia.turn_rate())
+  if (const std::optional<Eigen::Vector3d> rate = inertia.turn_rate()) {
     motion->tangent.tail<3>() = -motion->interval * *rate;  // the world turns against the camera
-  else if (history.has_velocity())
-    motion = motion->at_end(geometry::log_se3(history.predicted_step(current.timestamp)));
-  return motion;
+    return motion;
+  }
+  // A step of another length says little of how the rotation changes.
+  constexpr double longest_ratio = 2.5;
+  const double ratio = history.has_velocity() ? motion->interval / history.velocity_interval() : 0.0;
+  if (!(ratio <= longest_ratio && ratio * longest_ratio >= 1.0)) return motion;
+  return motion->at_end(geometry::log_se3(history.predicted_step(current.timestamp)));
 }
 
 void TrackingContext::place_features(const SensorFrame& sensor_frame, const Eigen::Isometry3d& step,

@@ -5,7 +5,8 @@
 
 namespace holdfast {
 
-/// Whether lengths of the map are metres: its sensor measures them, or make_metric() has scaled it.
+/// Whether lengths of the map are metres: its sensor measures them, or MapInertia::scale is exactly 1, as after
+/// make_metric().
 bool is_metric(const Map& map);
 
 /// Scales the map of one camera to metres, by MapInertia::scale, which becomes 1. Poses that are kept relative to

@@ -118,7 +118,7 @@ class Pipeline {
   FrameResult feed(const SensorFrame& frame);
   /// Ends the run: waits until the threads have processed their queues, runs full bundle adjustment again if the map
   /// has grown since the last loop (unless interrupted), and notifies the observers. feed() must not be called
-  /// afterwards. Rethrows exceptions of the pipeline's threads.
+  /// afterwards; a second call does nothing. Rethrows exceptions of the pipeline's threads.
   void finish();
   /// Ends running bundle adjustments after their current iteration, and the waits of observers (Observer::interrupt()),
   /// both for the rest of the run: a viewer no longer pauses, and finish() does not adjust again. Any thread, also

@@ -68,6 +68,8 @@ class FrameHistory {
   /// Current T_camera_world of the last tracked frame; the history must not be empty.
   Eigen::Isometry3d last_pose(const Map& map) const;
 
+  /// Interval in which the velocity was measured [s].
+  double velocity_interval() const { return last_.velocity_interval; }
   /// Constant-velocity prediction of T_current_previous for a frame at this time; the identity without a velocity.
   Eigen::Isometry3d predicted_step(double timestamp) const;
   /// Predicted motion since the last tracked frame with the last velocity times `share`, also after a loss.

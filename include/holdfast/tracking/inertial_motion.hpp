@@ -53,7 +53,8 @@ class InertialMotion {
   bool is_reliable() const { return now_.has_value() && confirmations_ >= required_confirmations; }
   /// T_current_previous from the frame before, whether it had a pose or not; empty unless reliable.
   std::optional<Eigen::Isometry3d> step() const;
-  /// Angular velocity of the camera, in its frame, at the exposure of the current frame [rad/s]; empty unless reliable.
+  /// Angular velocity of the camera, in its frame, at the time stamp of the current frame [rad/s]; empty unless
+  /// reliable.
   std::optional<Eigen::Vector3d> turn_rate() const;
   /// Empty unless reliable.
   std::optional<InertialPrediction> prediction() const;

@@ -61,7 +61,8 @@ struct TrackingContext {
   /// The motion T_current_previous = step since the last tracked frame; empty if interval() is.
   std::optional<FrameMotion> motion_by(const Eigen::Isometry3d& step) const;
   /// motion_by() this step, with the rotation at the exposure of the current frame: by the gyroscope if it is reliable,
-  /// or else by FrameMotion::at_end() if the frame before the previous one was tracked as well.
+  /// or else by FrameMotion::at_end() if there is a step before it of about the same length. This changes measured
+  /// steps only, since a prediction without inertia repeats the step before.
   std::optional<FrameMotion> motion_at_exposure(const Eigen::Isometry3d& step) const;
   /// Corrects the features of the current frame for motion_at_exposure(step) (FrameBuilder::place_features).
   void place_features(const SensorFrame& sensor_frame, const Eigen::Isometry3d& step, StageTimes& times);
