@@ -165,7 +165,7 @@ struct Pipeline::State {
   /// After the last adjustment of the map, which places keyframes. `before`: the trajectory before it.
   void smooth_frames(const Trajectory& before) HOLDFAST_EXCLUDES(map);
   void smooth_trajectory() HOLDFAST_EXCLUDES(map);
-  /// What the finished map gets: metres, and classes of its points.
+  /// Scales the finished map to metres and classifies its points.
   void complete_map() HOLDFAST_EXCLUDES(map);
   /// What the sensor of this pipeline has of a frame, in colour where a part needs that.
   SensorFrame used_images(const SensorFrame& given) const;

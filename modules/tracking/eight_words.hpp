@@ -21,7 +21,7 @@ using ThirtyTwoWords = std::int16_t __attribute__((vector_size(64)));
 using FourWords = std::int16_t __attribute__((vector_size(8)));
 using FourFloats = float __attribute__((vector_size(16)));
 
-/// As many bytes, words without a sign, whole numbers and fractional ones.
+/// As many bytes, unsigned words, whole numbers and fractional ones.
 template <class Words>
 struct LanesOf;
 template <>

@@ -113,7 +113,7 @@ void InertialMotion::begin_frame(const SensorFrame& frame) {
     return;
   }
   rate_ = rate_at(samples, frame.timestamp);
-  turn_rate_ = geometry::log_so3(motion->delta().rotation).norm() / motion->duration();
+  mean_turn_rate_ = geometry::log_so3(motion->delta().rotation).norm() / motion->duration();
   if (last_) {
     now_ = last_;
     now_->predict(*motion, *rate_);
@@ -189,7 +189,7 @@ InertialFilter::PoseCovariance InertialMotion::measurement_covariance(double dev
   const auto total = [](double a, double b, double c) { return a * a + b * b + c * c; };
   InertialFilter::PoseCovariance covariance = InertialFilter::PoseCovariance::Zero();
   covariance.diagonal().head<3>().setConstant(total(deviations_.position, scale_ * deviation, stamp_deviation * speed));
-  covariance.diagonal().tail<3>().setConstant(total(deviations_.rotation, stamp_deviation * turn_rate_, 0.0));
+  covariance.diagonal().tail<3>().setConstant(total(deviations_.rotation, stamp_deviation * mean_turn_rate_, 0.0));
   return covariance;
 }
 

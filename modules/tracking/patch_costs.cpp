@@ -90,7 +90,7 @@ HOLDFAST_INLINE void mean_differences(const WordRows& left, const WordRows& righ
 template <class Words>
 HOLDFAST_INLINE void compare(const Patches& patches, int* costs) {
   constexpr int lanes = sizeof(Words) / sizeof(std::int16_t);
-  constexpr int most_differences = 65535 / 510;  // of which a sum fits into 16 bits
+  constexpr int most_differences = 65535 / 510;  // whose sum fits into 16 unsigned bits
   using Integers = typename LanesOf<Words>::Integers;
   using Unsigned = typename LanesOf<Words>::Unsigned;
   const int side = patches.side, shifts = patches.shifts;

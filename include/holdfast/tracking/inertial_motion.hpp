@@ -125,7 +125,7 @@ class InertialMotion {
   int confirmations_ = 0, contradictions_ = 0, refusals_ = 0;  // the latter two in a row
   bool is_refused_ = false;                                    // the current frame is counted in refusals_
   bool is_corrected_ = false;                                  // now_ knows the current pose
-  double turn_rate_ = 0.0;                                     // of the current frame [rad/s]
+  double mean_turn_rate_ = 0.0;                                // of the current frame [rad/s]
   double found_time_ = 0.0;                                    // [s]
   std::optional<Eigen::Vector3d> rate_;                        // measured at the current frame [rad/s]
   std::optional<MapInertia> known_;                            // a filter begins with it

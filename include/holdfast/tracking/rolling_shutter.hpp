@@ -18,11 +18,10 @@ struct FrameMotion {
   /// T_later_current by constant velocity, for a time `seconds` after the current frame.
   Eigen::Isometry3d during(double seconds) const { return geometry::exp_se3(seconds / interval * tangent); }
 
-  /// The motion that the velocity at the end of this step would make in its interval, `previous` being the step before
-  /// it, at the same interval: the rotation is extrapolated from the middle of the step, since a camera in a hand turns
-  /// back and forth within few frames. By exact steps that would be half an interval (backward difference of second
-  /// order); the noise of measured ones grows with it, so that it is less. The translation stays, whose noise is larger
-  /// than what it changes in this time.
+  /// This step with its rotation extrapolated towards the end of the step; `previous` is the step before it, scaled to
+  /// the same interval. Exact steps would need half an interval (backward difference of second order); the noise of
+  /// measured steps grows with the factor, so that it is less. The translation is not extrapolated, since its noise
+  /// exceeds the change.
   FrameMotion at_end(const geometry::Vector6d& previous) const {
     constexpr double extrapolation = 0.3;  // intervals
     FrameMotion motion = *this;
