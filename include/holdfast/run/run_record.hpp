@@ -67,7 +67,7 @@ struct RunRecord {
   std::size_t map_keyframes = 0;  ///< number of keyframes in the map at the end
   std::size_t map_points = 0;     ///< number of points in the map at the end
   bool is_metric = false;  ///< lengths are metres: not those of one camera, unless inertial measurements scale them
-  Map map;                ///< the map at the end; empty when the caller keeps the pipeline, see run()
+  Map map;                 ///< the map at the end; empty when the caller keeps the pipeline, see run()
   bool localised_only = false;                       ///< localisation in a given map, which was not changed
   std::optional<std::vector<CloudPoint>> dense_map;  ///< cloud of the static scene, with dense_map.enabled
   std::optional<TriangleMesh> surface;               ///< mesh of the static scene, with surface.enabled
