@@ -74,7 +74,7 @@ TEST(MonoRun, MasksKeepPeopleOutAndTwiceTheSame) {
   EXPECT_EQ(program.text("a/map.hfm"), program.text("b/map.hfm"));
 }
 
-/// In threads, the load of the machine decides which frames become keyframes: errors were 0.005 to 0.068 m in 33 runs,
+/// In threads, the load of the machine decides which frames become keyframes: errors were 0.005 to 0.068 m in 28 runs,
 /// and 0.12 to 0.20 m without masks.
 TEST(MonoRun, MasksWorkInThreads) {
   const test::Program program;
