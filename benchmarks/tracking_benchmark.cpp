@@ -76,18 +76,17 @@ void tracking(benchmark::State& state, const std::string& extractor) {
 void stereo_tracking(benchmark::State& state, const std::string& extractor) {
   cv::setNumThreads(1);
   std::vector<double> tracking_times, orb_times, extraction_times;
-  const cv::Ptr<cv::ORB> orb = cv::ORB::create(1000);
-  std::vector<cv::KeyPoint> keypoints;
+  OrbYardstick orb;
   Registry registry;
   register_builtin_plugins(registry);
   const auto one_more = registry.create<FeatureExtractor>(extractor, {}, CreationContext{});
   Features features;
-  cv::Mat grey, descriptors;
+  cv::Mat grey;
   for (auto _ : state) {
     BuiltPipeline built = build_stereo(extractor);
     while (const auto frame = built.source->next()) {
       cv::cvtColor(frame->colour, grey, cv::COLOR_BGR2GRAY);
-      time(orb_times, [&] { orb->detectAndCompute(grey, cv::noArray(), keypoints, descriptors); });
+      orb.add_thread_seconds(frame->colour, orb_times);
       time(extraction_times, [&] { one_more->extract(grey, cv::Mat(), features); });
       time(tracking_times, [&] { built.pipeline.feed(*frame); });
     }
@@ -104,15 +103,14 @@ void stereo_tracking(benchmark::State& state, const std::string& extractor) {
 void dense_stereo(benchmark::State& state) {
   cv::setNumThreads(1);
   std::vector<double> dense_times, orb_times;
-  const cv::Ptr<cv::ORB> orb = cv::ORB::create(1000);
-  std::vector<cv::KeyPoint> keypoints;
-  cv::Mat grey, descriptors;
+  OrbYardstick orb;
+  cv::Mat grey;
   for (auto _ : state) {
     const BuiltPipeline built = build_stereo("orb");
     PairDepth depth(built.pipeline.camera(), {.is_dense = true});
     while (const auto frame = built.source->next()) {
       cv::cvtColor(frame->colour, grey, cv::COLOR_BGR2GRAY);
-      time(orb_times, [&] { orb->detectAndCompute(grey, cv::noArray(), keypoints, descriptors); });
+      orb.add_thread_seconds(frame->colour, orb_times);
       time(dense_times, [&] { benchmark::DoNotOptimize(depth.begin(*frame, grey)); });
     }
     state.SetIterationTime(std::accumulate(dense_times.begin(), dense_times.end(), 0.0));
@@ -127,9 +125,7 @@ void dense_stereo(benchmark::State& state) {
 void inertial_tracking(benchmark::State& state, bool scale_is_known) {
   cv::setNumThreads(1);
   std::vector<double> inertial_times, orb_times;
-  const cv::Ptr<cv::ORB> orb = cv::ORB::create(1000);
-  std::vector<cv::KeyPoint> keypoints;
-  cv::Mat grey, descriptors;
+  OrbYardstick orb;
   for (auto _ : state) {
     const BuiltPipeline built = build(
         "source: { simulated: { path: xyz, duration: 20 } }\ncamera: tum_fr3\nimu: bmi055\nfeatures: orb\n"
@@ -142,8 +138,7 @@ void inertial_tracking(benchmark::State& state, bool scale_is_known) {
     };
     std::optional<Eigen::Isometry3d> last;
     while (const auto frame = built.source->next()) {
-      cv::cvtColor(frame->colour, grey, cv::COLOR_BGR2GRAY);
-      time(orb_times, [&] { orb->detectAndCompute(grey, cv::noArray(), keypoints, descriptors); });
+      orb.add_thread_seconds(frame->colour, orb_times);
       const Eigen::Isometry3d pose = frame->truth->T_world_camera->inverse();
       poses[frame->timestamp] = pose;
       time(inertial_times, [&] {

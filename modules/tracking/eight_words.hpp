@@ -21,29 +21,15 @@ using ThirtyTwoWords = std::int16_t __attribute__((vector_size(64)));
 using FourWords = std::int16_t __attribute__((vector_size(8)));
 using FourFloats = float __attribute__((vector_size(16)));
 
-/// As many bytes, unsigned words, whole numbers and fractional ones.
+/// As many bytes, unsigned words, whole numbers and fractional ones. (GCC 12 ignores the size of an alias that depends
+/// on a parameter, but not that of a typedef.)
 template <class Words>
-struct LanesOf;
-template <>
-struct LanesOf<EightWords> {
-  using Bytes = std::uint8_t __attribute__((vector_size(8)));
-  using Unsigned = std::uint16_t __attribute__((vector_size(16)));
-  using Integers = std::int32_t __attribute__((vector_size(32)));
-  using Floats = float __attribute__((vector_size(32)));
-};
-template <>
-struct LanesOf<SixteenWords> {
-  using Bytes = std::uint8_t __attribute__((vector_size(16)));
-  using Unsigned = std::uint16_t __attribute__((vector_size(32)));
-  using Integers = std::int32_t __attribute__((vector_size(64)));
-  using Floats = float __attribute__((vector_size(64)));
-};
-template <>
-struct LanesOf<ThirtyTwoWords> {
-  using Bytes = std::uint8_t __attribute__((vector_size(32)));
-  using Unsigned = std::uint16_t __attribute__((vector_size(64)));
-  using Integers = std::int32_t __attribute__((vector_size(128)));
-  using Floats = float __attribute__((vector_size(128)));
+struct LanesOf {
+  static constexpr int count = sizeof(Words) / sizeof(std::int16_t);
+  typedef std::uint8_t Bytes __attribute__((vector_size(count)));
+  typedef std::uint16_t Unsigned __attribute__((vector_size(count * sizeof(std::uint16_t))));
+  typedef std::int32_t Integers __attribute__((vector_size(count * sizeof(std::int32_t))));
+  typedef float Floats __attribute__((vector_size(count * sizeof(float))));
 };
 
 template <class Lanes, class Value>

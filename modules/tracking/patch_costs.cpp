@@ -48,7 +48,7 @@ struct WordRows {
 
 template <class Words>
 HOLDFAST_INLINE void read(const ByteRows& from, int part, int used, int side, WordRows& to) {
-  constexpr int lanes = sizeof(Words) / sizeof(std::int16_t);
+  constexpr int lanes = LanesOf<Words>::count;
   const auto above = static_cast<std::int16_t>(64 - part), below = static_cast<std::int16_t>(part);
   for (int k = 0; k < used; k += lanes) {
     Words sum{};
@@ -67,7 +67,7 @@ HOLDFAST_INLINE void read(const ByteRows& from, int part, int used, int side, Wo
 template <class Words>
 HOLDFAST_INLINE void mean_differences(const WordRows& left, const WordRows& right, int side, int shifts,
                                       std::int16_t* means) {
-  constexpr int lanes = sizeof(Words) / sizeof(std::int16_t);
+  constexpr int lanes = LanesOf<Words>::count;
   using Integers = typename LanesOf<Words>::Integers;
   using Floats = typename LanesOf<Words>::Floats;
   alignas(64) std::array<std::int32_t, max_patch_shifts> differences{};
@@ -89,7 +89,7 @@ HOLDFAST_INLINE void mean_differences(const WordRows& left, const WordRows& righ
 
 template <class Words>
 HOLDFAST_INLINE void compare(const Patches& patches, int* costs) {
-  constexpr int lanes = sizeof(Words) / sizeof(std::int16_t);
+  constexpr int lanes = LanesOf<Words>::count;
   constexpr int most_differences = 65535 / 510;  // whose sum fits into 16 unsigned bits
   using Integers = typename LanesOf<Words>::Integers;
   using Unsigned = typename LanesOf<Words>::Unsigned;
