@@ -370,7 +370,7 @@ void Pipeline::finish() {
   s.flow.rethrow_failures();
   {
     const LockedMap locked(s.map, LockPriority::background);
-    s.flow.in_background([&](StageTimes& times) { s.tracker.finish(locked, times); });
+    s.flow.in_background([&](StageTimes& times) { s.tracker.finish(locked, times, s.is_interrupted); });
     const std::uint32_t submap = s.tracker.main_submap(locked);
     const std::optional<MapInertia> estimates = s.tracker.inertia_of(locked, submap);
     if (!s.parts.localise_only) locked->set_inertia(estimates);

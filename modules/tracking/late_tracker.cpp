@@ -18,7 +18,7 @@ void LateTracker::keep(const Frame& frame) {
   if (!features_have_depth(parts_.map.sensor())) frames_.back().static_probability.assign(frame.size(), 1.0F);
 }
 
-void LateTracker::finish(StageTimes& times) {
+void LateTracker::finish(StageTimes& times, const std::atomic<bool>& stop) {
   if (frames_.empty()) return;
   const StageTimer timer(times, "late frames");
   std::vector<Frame*> frames;
@@ -28,15 +28,16 @@ void LateTracker::finish(StageTimes& times) {
         frames.push_back(&frame);
   for (int pass = 0; pass < 2; ++pass) {
     std::reverse(frames.begin(), frames.end());
-    locate(frames);
+    locate(frames, stop);
   }
   frames_.clear();
 }
 
-void LateTracker::locate(std::vector<Frame*>& frames) {
+void LateTracker::locate(std::vector<Frame*>& frames, const std::atomic<bool>& stop) {
   constexpr double near = 0.2;  // s
   Frame* located = nullptr;
   for (Frame* frame : frames) {
+    if (stop) return;
     if (located != nullptr && std::abs(located->timestamp - frame->timestamp) > near) located = nullptr;
     if (!parts_.history.past_pose(frame->timestamp, parts_.map)) {
       if (!find_pose(located, *frame)) continue;

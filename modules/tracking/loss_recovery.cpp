@@ -105,10 +105,10 @@ bool LossRecovery::wants_mask(TrackerState state) const {
          (state == TrackerState::lost || state == TrackerState::unconfirmed);
 }
 
-void LossRecovery::finish(StageTimes& times) {
+void LossRecovery::finish(StageTimes& times, const std::atomic<bool>& stop) {
   withdraw();
   backwards_.finish(times);
-  late_.finish(times);
+  late_.finish(times, stop);
 }
 
 LossRecord LossRecovery::record() const {

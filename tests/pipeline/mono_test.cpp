@@ -187,8 +187,12 @@ TEST_F(MonoTest, FramesOfTheStartAgreeWithTheirNeighbours) {
 }
 
 TEST_F(MonoTest, FramesBeforeTheStartAreLocatedInTheFinishedMap) {
-  for (const std::size_t kept : {100U, 3U}) {
-    SCOPED_TRACE(kept);
+  struct Case {
+    std::size_t kept;
+    bool is_interrupted;
+  };
+  for (const auto [kept, is_interrupted] : {Case{100, false}, Case{3, false}, Case{100, true}}) {
+    SCOPED_TRACE(::testing::Message() << kept << is_interrupted);
     next_ = 0;
     truth_.clear();
     TrackingSettings tracking;
@@ -201,9 +205,11 @@ TEST_F(MonoTest, FramesBeforeTheStartAreLocatedInTheFinishedMap) {
     const auto without_pose = static_cast<std::size_t>(index - 2);  // all but the two views
     ASSERT_GT(without_pose, 5U);
     for (int i = 0; i < 60; ++i) ASSERT_EQ(feed(pipeline, index++).status, TrackingStatus::tracked);
+    if (is_interrupted) pipeline.interrupt();
     pipeline.finish();
-    EXPECT_EQ(pipeline.loss_record().located_late, std::min(kept, without_pose));
-    EXPECT_EQ(pipeline.trajectory().size(), truth_.size() - without_pose + std::min(kept, without_pose));
+    const std::size_t located = is_interrupted ? 0 : std::min(kept, without_pose);
+    EXPECT_EQ(pipeline.loss_record().located_late, located);
+    EXPECT_EQ(pipeline.trajectory().size(), truth_.size() - without_pose + located);
     std::size_t poses = 0;
     EXPECT_LT(error(pipeline.trajectory(), 0.0, poses), 0.01);
   }

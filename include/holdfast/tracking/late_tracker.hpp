@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <deque>
 #include <vector>
@@ -35,15 +36,16 @@ class LateTracker {
 
   /// Keeps a copy of a frame; only the last TrackingSettings::late_frames are kept.
   void keep(const Frame& frame);
-  /// Locates the kept frames that have no pose yet, and forgets all. Adds the stage "late frames" if there are any.
-  void finish(StageTimes& times);
+  /// Locates the kept frames that have no pose yet, and forgets all; the others stay without a pose once `stop` is set,
+  /// by any thread. Adds the stage "late frames" if there are any.
+  void finish(StageTimes& times, const std::atomic<bool>& stop);
 
   /// Number of frames that received a pose.
   std::size_t located() const { return located_; }
 
  private:
-  /// Locates the frames without a pose in this order, each by the one before it.
-  void locate(std::vector<Frame*>& frames);
+  /// Locates the frames without a pose in this order, each by the one before it, until `stop`.
+  void locate(std::vector<Frame*>& frames, const std::atomic<bool>& stop);
   /// `neighbour`: a frame with a pose close in time, or null.
   bool find_pose(Frame* neighbour, Frame& frame);
   bool match_neighbour(Frame& neighbour, Frame& frame);

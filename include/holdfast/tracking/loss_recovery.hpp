@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <atomic>
 #include <cstddef>
 #include <optional>
 
@@ -63,8 +64,9 @@ class LossRecovery {
   void keyframe_added(KeyFrameId keyframe) { backwards_.keyframe_added(keyframe); }
   /// Resets the state after the map was removed.
   void forget_map() { unconfirmed_.reset(); }
-  /// Ends the run: withdraws unconfirmed poses, tracks all kept frames backwards, and locates those that are left.
-  void finish(StageTimes& times);
+  /// Ends the run: withdraws unconfirmed poses, tracks all kept frames backwards, and, until `stop`, locates those that
+  /// are left.
+  void finish(StageTimes& times, const std::atomic<bool>& stop);
   LossRecord record() const;
 
  private:

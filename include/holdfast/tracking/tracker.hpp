@@ -64,8 +64,9 @@ class Tracker {
   void keyframe_added(const MapAccess& map, KeyFrameId keyframe);
   /// Resets tracking to the state before the first frame. The caller has emptied the map.
   void forget_map(const MapAccess& map);
-  /// Ends tracking: withdraws unconfirmed poses after a loss, and tracks kept frames backwards.
-  void finish(const MapAccess&, StageTimes& times) { recovery_.finish(times); }
+  /// Ends tracking: withdraws unconfirmed poses after a loss, tracks kept frames backwards, and, until `stop`, locates
+  /// others in the map.
+  void finish(const MapAccess&, StageTimes& times, const std::atomic<bool>& stop) { recovery_.finish(times, stop); }
 
   /// Moves frames as the last adjustment moved the keyframes before and after them (holdfast::follow_keyframes()).
   void follow_keyframes(const MapAccess& map, const Trajectory& before) {
