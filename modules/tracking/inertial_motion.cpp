@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <span>
 #include <utility>
 
 #include "holdfast/core/imu_timeline.hpp"
@@ -435,9 +436,10 @@ void InertialMotion::try_to_start(const PastPose& past_pose) {
   options.estimate_scale = !scale_is_known_;
   options.mounting_deviation = mounting_deviation;
   options.time_offset_deviation = time_offset_deviation;
-  // How exact the poses are is unknown: the first deviations that explain their residuals are right.
-  constexpr PoseDeviations possible_deviations[] = {{0.002, 0.001}, {0.005, 0.0025}, {0.01, 0.005}};
-  for (const PoseDeviations& deviations : possible_deviations) {
+  // How exact the poses are is unknown: the first deviations that explain their residuals are right. Those of a slow
+  // camera have other views of other points than the one before, and not its errors.
+  constexpr PoseDeviations possible_deviations[] = {{0.002, 0.001}, {0.005, 0.0025}, {0.01, 0.005}, {0.02, 0.01}};
+  for (const PoseDeviations& deviations : std::span(possible_deviations).subspan(is_slow ? 1 : 0, 3)) {
     options.position_deviation = deviations.position;
     options.rotation_deviation = deviations.rotation;
     const auto solve = [&] { return geometry::start_inertially(poses, *motions, imu_->T_body_camera, options, rates); };

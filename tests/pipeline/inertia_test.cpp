@@ -90,6 +90,43 @@ TEST_F(InertiaTest, AMapWithMotionsIsMoreAccurateAndTheSameInEachRun) {
   EXPECT_GT(in_camera(linked.trajectory, gravity).dot(in_camera(truth_, down)), std::cos(0.03));
 }
 
+/// Three frames in two seconds. The lens is covered for two of them.
+TEST(SlowCameraWithInertia, KeepsItsPoseWithoutAView) {
+  const ImuCalibration imu = *find_imu("bmi055");
+  simulation::Simulator simulator(
+      simulation::read_scene({}, {"camera.path=xyz", "seed=3", "frame_rate=1.5", "duration=20"}),
+      *find_camera("tum_fr3"));
+  const auto is_covered = [](double time) { return time > 13.5 && time < 14.9; };
+  const auto run = [&](bool inertia) {
+    simulation::ImuSensor sensor(simulator.path(), imu, 1);
+    TrackingSettings tracking;
+    tracking.inertia = inertia;
+    Pipeline pipeline = PipelineBuilder()
+                            .camera(simulator.camera())
+                            .sensor(Sensor::rgbd)
+                            .imu(imu)
+                            .features(OrbSettings{.count = 500})
+                            .optimizer(SchurSettings{})
+                            .tracking(tracking)
+                            .build();
+    Trajectory truth;
+    for (std::uint64_t i = 0; i < simulator.frame_count(); ++i) {
+      SensorFrame frame = simulator.frame(i);
+      frame.imu = sensor.take(frame.timestamp);
+      if (is_covered(frame.timestamp)) frame.colour.setTo(0), frame.depth.setTo(0);
+      truth.push_back({frame.timestamp, *frame.truth->T_world_camera});
+      frame.truth.reset();
+      pipeline.feed(frame);
+    }
+    pipeline.finish();
+    return evaluate(truth, pipeline.trajectory(), {});
+  };
+  const Evaluation inertial = run(true), visual = run(false);
+  EXPECT_EQ(inertial.poses.size(), simulator.frame_count()) << "all of them";
+  EXPECT_LT(visual.poses.size(), simulator.frame_count());
+  EXPECT_LT(inertial.absolute_error.max, 0.05);
+}
+
 /// Its map has a unit of its own until then.
 TEST(OneCameraWithInertia, EndsInMetres) {
   const ImuCalibration imu = *find_imu("bmi055");
