@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "holdfast/geometry/preintegration.hpp"
@@ -15,6 +16,9 @@ constexpr int gravity_index = 15, mounting_index = 18, time_index = 21;
 constexpr double direction_walk = 2e-4;
 /// Errors of the gyroscope's scale and axes, which calibrations leave, as a share of the rotation.
 constexpr double rate_error = 0.005;
+/// Errors of scale, axes and time are no white noise: over more than this time [s] they add up, so that deviations grow
+/// with the time, not with its root.
+constexpr double white_noise_time = 0.2;
 
 Eigen::Matrix3d tangent_projector(const Eigen::Vector3d& gravity) {
   const Eigen::Vector3d down = gravity.normalized();
@@ -59,7 +63,8 @@ void InertialFilter::predict(const geometry::Preintegration& motion, const Eigen
   transition.topLeftCorner<15, 15>() = -inverse * jacobians.first;
   transition.block<15, 3>(0, gravity_index) = -inverse * jacobians.gravity;
   covariance_ = (transition * covariance_ * transition.transpose()).eval();
-  covariance_.topLeftCorner<15, 15>() += inverse * motion.covariance() * inverse.transpose();
+  const double model_factor = std::max(1.0, motion.duration() / white_noise_time);
+  covariance_.topLeftCorner<15, 15>() += model_factor * inverse * motion.covariance() * inverse.transpose();
   covariance_.block<3, 3>(gravity_index, gravity_index) +=
       direction_walk * direction_walk * motion.duration() * gravity_.squaredNorm() * tangent_projector(gravity_);
   const double turn = rate_error * geometry::log_so3(motion.delta().rotation).norm();

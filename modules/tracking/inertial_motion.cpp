@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <span>
 #include <utility>
 
 #include "holdfast/core/imu_timeline.hpp"
@@ -18,10 +19,19 @@ constexpr double start_time = 2.0, start_time_of_one_camera = 5.0;
 constexpr double pose_spacing = 0.1, pose_spacing_of_one_camera = 0.2;
 constexpr double largest_pose_gap = 1.0;
 constexpr std::size_t fewest_poses = 10;
+/// The same of a slow camera, which takes fewer frames than that in this time.
+constexpr double longest_start_time = 15.0, largest_pose_gap_of_slow_camera = 5.0;
+constexpr std::size_t fewest_poses_of_slow_camera = 6;
+/// A change of the gyroscope's bias that turns the motion between two poses by more than this [rad] is integrated anew.
+constexpr double largest_linear_turn = 0.02;
+constexpr int most_integrations = 3;
 constexpr double start_interval = 0.25;  // between two attempts
 /// With six degrees of freedom, 18 is exceeded by chance once in 160 frames; poses from images have heavier tails.
 constexpr double largest_chi_square = 40.0;
 constexpr int tolerated_later = 15, tolerated_at_start = 2, tolerated_refusals = 4;  // frames in a row
+/// A prediction over more than this time [s] says as much as those of some frames.
+constexpr double slow_interval = 0.2;
+constexpr int weight_of_slow_frame = 3;
 constexpr double most_lost_time = 10.0;  // [s]; then the velocity says nothing
 /// Of calibrations: rotation [rad], time offset [s].
 constexpr double mounting_deviation = 0.015, time_offset_deviation = 0.005;
@@ -61,14 +71,31 @@ struct StartPoses {
   std::vector<Eigen::Isometry3d> T_world_camera;
 };
 
-/// Chooses poses of tracked frames later than `earliest`, `spacing` apart, from the last one backwards to the first
-/// gap.
-StartPoses choose_start_poses(const std::vector<double>& tracked, double earliest, double spacing,
+/// Which poses a start takes.
+struct StartWindow {
+  double time, spacing, largest_gap;  // [s]
+  std::size_t fewest;                 // poses
+  double earliest;                    // time stamp [s]
+};
+
+StartWindow start_window(bool scale_is_known, double now, bool is_slow) {
+  const double time = scale_is_known ? start_time : start_time_of_one_camera;
+  const double spacing = scale_is_known ? pose_spacing : pose_spacing_of_one_camera;
+  if (is_slow)
+    return {time, spacing, largest_pose_gap_of_slow_camera, fewest_poses_of_slow_camera, now - longest_start_time};
+  return {time, spacing, largest_pose_gap, fewest_poses, now - time - spacing};
+}
+
+/// Chooses poses of tracked frames, `spacing` apart, from the last one backwards to the first gap, or until they are
+/// enough for a slow camera.
+StartPoses choose_start_poses(const std::vector<double>& tracked, const StartWindow& window, bool is_slow,
                               const InertialMotion::PastPose& past_pose) {
   StartPoses chosen;
-  for (auto stamp = tracked.rbegin(); stamp != tracked.rend() && *stamp > earliest; ++stamp) {
-    if (!chosen.stamps.empty() && chosen.stamps.back() - *stamp < spacing) continue;
-    if (!chosen.stamps.empty() && chosen.stamps.back() - *stamp > largest_pose_gap) break;
+  for (auto stamp = tracked.rbegin(); stamp != tracked.rend() && *stamp > window.earliest; ++stamp) {
+    const std::vector<double>& stamps = chosen.stamps;
+    if (is_slow && stamps.size() >= window.fewest && stamps.front() - stamps.back() >= window.time) break;
+    if (!stamps.empty() && stamps.back() - *stamp < window.spacing) continue;
+    if (!stamps.empty() && stamps.back() - *stamp > window.largest_gap) break;
     const std::optional<Eigen::Isometry3d> T_camera_world = past_pose(*stamp);
     if (!T_camera_world) continue;
     chosen.stamps.push_back(*stamp);
@@ -82,14 +109,21 @@ StartPoses choose_start_poses(const std::vector<double>& tracked, double earlies
 /// Motions from each time to the next; empty where samples are missing.
 std::optional<std::vector<geometry::Preintegration>> preintegrate_between(const std::vector<ImuSample>& samples,
                                                                           const std::vector<double>& stamps,
-                                                                          const ImuNoise& noise) {
+                                                                          const ImuNoise& noise, const ImuBias& bias) {
   std::vector<geometry::Preintegration> motions;
   for (std::size_t i = 0; i + 1 < stamps.size(); ++i) {
-    const auto motion = geometry::preintegrate(samples, stamps[i], stamps[i + 1], noise, {});
+    const auto motion = geometry::preintegrate(samples, stamps[i], stamps[i + 1], noise, bias);
     if (!motion) return std::nullopt;
     motions.push_back(*motion);
   }
   return motions;
+}
+
+/// Whether the motions depend linearly on biases up to these.
+bool is_linear(const std::vector<geometry::Preintegration>& motions, const ImuBias& bias) {
+  return std::all_of(motions.begin(), motions.end(), [&](const geometry::Preintegration& motion) {
+    return motion.duration() * (bias.gyroscope - motion.bias().gyroscope).norm() <= largest_linear_turn;
+  });
 }
 
 }  // namespace
@@ -103,7 +137,9 @@ void InertialMotion::begin_frame(const SensorFrame& frame) {
   is_corrected_ = is_refused_ = false;
   rate_.reset();
   const std::optional<double> before = std::exchange(timestamp_, frame.timestamp);
+  remember_frame();
   if (!before) return;
+  weight_ = frame.timestamp - *before > slow_interval ? weight_of_slow_frame : 1;
   const double tolerance = 2.0 / imu_->rate;
   const std::vector<ImuSample> samples = covering(frame.imu, *before, frame.timestamp, tolerance);
   const ImuBias bias = last_ ? last_->state().bias : ImuBias();
@@ -120,6 +156,13 @@ void InertialMotion::begin_frame(const SensorFrame& frame) {
   } else {
     append_imu(samples_, samples);
   }
+}
+
+/// Keeps the stamps of the last seconds, and one before.
+void InertialMotion::remember_frame() {
+  frames_.push_back(*timestamp_);
+  const double begin = *timestamp_ - longest_start_time;
+  while (frames_.size() > 2 && frames_[1] < begin) frames_.erase(frames_.begin());
 }
 
 /// A saturated measurement says nothing of the motion.
@@ -201,7 +244,7 @@ bool InertialMotion::contradicts(const Eigen::Isometry3d& T_camera_world, double
 void InertialMotion::count_refusal(const Eigen::Isometry3d& T_camera_world, double factor) {
   if (is_refused_ || !contradicts(T_camera_world, factor)) return;
   is_refused_ = true;
-  if (++refusals_ > tolerated_refusals) refute();
+  if ((refusals_ += weight_) > tolerated_refusals) refute();
 }
 
 bool InertialMotion::correct(const Eigen::Isometry3d& T_camera_world, const Eigen::Matrix<double, 6, 6>& covariance,
@@ -249,9 +292,10 @@ void InertialMotion::learn(const Eigen::Isometry3d& T_camera_world, double devia
   const InertialFilter::PoseCovariance covariance = measurement_covariance(deviation);
   if (now_->chi_square(measured, covariance) <= largest_chi_square) {
     now_->correct(measured, covariance);
-    confirmations_ = std::min(confirmations_ + 1, required_confirmations);
+    confirmations_ = std::min(confirmations_ + weight_, required_confirmations);
     contradictions_ = refusals_ = 0;
-  } else if (++contradictions_ > (confirmations_ < required_confirmations ? tolerated_at_start : tolerated_later)) {
+  } else if (confirmations_ < required_confirmations ? ++contradictions_ > tolerated_at_start
+                                                     : (contradictions_ += weight_) > tolerated_later) {
     refute();
     return;
   }
@@ -362,21 +406,28 @@ void InertialMotion::reset() {
   next_start_ = 0.0;
 }
 
+/// Whether the last frames are too few for a start, even if all of them had a pose.
+bool InertialMotion::is_slow_camera() const {
+  const double begin = *timestamp_ - start_window(scale_is_known_, *timestamp_, false).time;
+  const auto later = std::count_if(frames_.begin(), frames_.end(), [&](double stamp) { return stamp >= begin; });
+  return frames_.front() < begin && static_cast<std::size_t>(later) < fewest_poses;
+}
+
 void InertialMotion::try_to_start(const PastPose& past_pose) {
   const double now = *timestamp_;
-  const double time = scale_is_known_ ? start_time : start_time_of_one_camera;
-  const double spacing = scale_is_known_ ? pose_spacing : pose_spacing_of_one_camera;
-  const double earliest = now - 1.5 * time;
+  const bool is_slow = is_slow_camera();
+  const StartWindow window = start_window(scale_is_known_, now, is_slow);
+  const double earliest = now - longest_start_time - largest_pose_gap;
   std::erase_if(tracked_, [&](double stamp) { return stamp < earliest; });
   const auto first_kept = std::find_if(samples_.begin(), samples_.end(),
                                        [&](const ImuSample& sample) { return sample.timestamp >= earliest; });
   if (first_kept != samples_.begin()) samples_.erase(samples_.begin(), std::prev(first_kept));
 
-  const StartPoses start_poses = choose_start_poses(tracked_, now - time - spacing, spacing, past_pose);
+  const StartPoses start_poses = choose_start_poses(tracked_, window, is_slow, past_pose);
   const std::vector<double>& stamps = start_poses.stamps;
-  if (stamps.size() < fewest_poses || now - stamps.front() < time) return;
+  if (stamps.size() < window.fewest || now - stamps.front() < window.time) return;
   next_start_ = now + start_interval;
-  const auto motions = preintegrate_between(samples_, stamps, imu_->noise);
+  auto motions = preintegrate_between(samples_, stamps, imu_->noise, {});
   if (!motions) return;
   const std::vector<Eigen::Isometry3d>& poses = start_poses.T_world_camera;
   std::vector<Eigen::Vector3d> rates;
@@ -385,13 +436,19 @@ void InertialMotion::try_to_start(const PastPose& past_pose) {
   options.estimate_scale = !scale_is_known_;
   options.mounting_deviation = mounting_deviation;
   options.time_offset_deviation = time_offset_deviation;
-  // How exact the poses are is unknown: the first deviations that explain their residuals are right.
-  constexpr PoseDeviations possible_deviations[] = {{0.002, 0.001}, {0.005, 0.0025}, {0.01, 0.005}};
-  for (const PoseDeviations& deviations : possible_deviations) {
+  // How exact the poses are is unknown: the first deviations that explain their residuals are right. Those of a slow
+  // camera have other views of other points than the one before, and not its errors.
+  constexpr PoseDeviations possible_deviations[] = {{0.002, 0.001}, {0.005, 0.0025}, {0.01, 0.005}, {0.02, 0.01}};
+  for (const PoseDeviations& deviations : std::span(possible_deviations).subspan(is_slow ? 1 : 0, 3)) {
     options.position_deviation = deviations.position;
     options.rotation_deviation = deviations.rotation;
-    const geometry::InertialStart start =
-        geometry::start_inertially(poses, *motions, imu_->T_body_camera, options, rates);
+    const auto solve = [&] { return geometry::start_inertially(poses, *motions, imu_->T_body_camera, options, rates); };
+    geometry::InertialStart start = solve();
+    // Motions depend on the biases linearly between poses that are close in time only.
+    for (int i = 0; i < most_integrations && !is_linear(*motions, start.bias); ++i) {
+      motions = preintegrate_between(samples_, stamps, imu_->noise, start.bias);
+      start = solve();
+    }
     if (!start.usable) continue;
     // Their mean squared residual, which is 1 for right deviations, says how wrong these are.
     const double factor = std::sqrt(std::max(1.0, start.mean_chi_square));

@@ -27,12 +27,15 @@ constexpr double keyframe_median_share = 0.5;  // of the median of those of fram
 /// offset are no white noise, and act for a second or more.
 constexpr double model_factor = 3.0;
 constexpr std::size_t most_frames = 900, fewest_frames = 3;  // of a chain
+/// Frames on both sides of such a chain that are solved with it and not adopted, so that chains meet without a step.
+constexpr std::size_t overlap = 60;
 
 enum class Role : std::uint8_t { tracked, drifting, keyframe };
 
-/// Frames `begin` to `end` - 1 of a trajectory that inertial measurements link, tracked ones at both ends.
+/// Frames `begin` to `end` - 1 of a trajectory that inertial measurements link, tracked ones at both ends. Those from
+/// `first` to `last` - 1 are adopted.
 struct Chain {
-  std::size_t begin = 0, end = 0;
+  std::size_t begin = 0, end = 0, first = 0, last = 0;
   std::vector<InertialHistory::Link> links;  // between indices from `begin` on
 };
 
@@ -101,7 +104,7 @@ class InertialSmoother {
   std::size_t take(const Chain& chain, const BundleProblem& solution) {
     move_keyframes(chain, solution);
     std::size_t count = 0;
-    for (std::size_t i = chain.begin; i < chain.end; ++i) {
+    for (std::size_t i = chain.first; i < chain.last; ++i) {
       if (roles_[i] == Role::keyframe) continue;
       smoothed_[i].T_world_camera = solution.poses[i - chain.begin].T_camera_world.inverse();
       ++count;
@@ -120,17 +123,20 @@ class InertialSmoother {
   /// In the unit of the map.
   Deviations first_deviations_of_map() const { return {first_deviations[0] / unit_, first_deviations[1]}; }
 
-  void add_chains(std::size_t begin, std::size_t end, std::vector<Chain>& chains) const {
+  /// Adds the chains of the frames `first` to `last` - 1, with their overlap.
+  void add_chains(std::size_t first, std::size_t last, std::vector<Chain>& chains) const {
+    const std::size_t begin = first - std::min(first, overlap), end = std::min(last + overlap, trajectory_.size());
     std::vector<double> timestamps;
     for (std::size_t i = begin; i < end; ++i) timestamps.push_back(trajectory_[i].timestamp);
     std::vector<InertialHistory::Link> links = inertia_.links(timestamps);
-    for (std::size_t first = 0, last = 0; first < links.size(); first = last) {
-      for (last = first + 1; last < links.size() && links[last].first == links[last - 1].second;) ++last;
-      Chain chain{begin + links[first].first, begin + links[last - 1].second + 1, {}};
+    for (std::size_t from = 0, to = 0; from < links.size(); from = to) {
+      for (to = from + 1; to < links.size() && links[to].first == links[to - 1].second;) ++to;
+      Chain chain{begin + links[from].first, begin + links[to - 1].second + 1, 0, 0, {}};
       while (chain.begin < chain.end && drifts(chain.begin)) ++chain.begin;
       while (chain.begin < chain.end && drifts(chain.end - 1)) --chain.end;
-      if (chain.end - chain.begin < fewest_frames) continue;
-      for (std::size_t k = first; k < last; ++k) {
+      chain.first = std::max(first, chain.begin), chain.last = std::min(last, chain.end);
+      if (chain.end - chain.begin < fewest_frames || chain.first >= chain.last) continue;
+      for (std::size_t k = from; k < to; ++k) {
         InertialHistory::Link& link = links[k];
         if (begin + link.first < chain.begin || begin + link.second >= chain.end) continue;
         link.first = begin + link.first - chain.begin, link.second = begin + link.second - chain.begin;
@@ -206,7 +212,7 @@ class InertialSmoother {
   /// Moves drifting keyframes, with the points that they alone observe.
   void move_keyframes(const Chain& chain, const BundleProblem& solution) {
     std::map<KeyFrameId, Eigen::Isometry3d> motions;  // T_world_world, from old to new
-    for (std::size_t i = chain.begin; i < chain.end; ++i) {
+    for (std::size_t i = chain.first; i < chain.last; ++i) {
       const auto found = keyframes_.find(trajectory_[i].timestamp);
       if (!drifts(i) || found == keyframes_.end()) continue;
       Eigen::Isometry3d& pose = map_.keyframe(found->second).frame.T_camera_world;

@@ -74,7 +74,7 @@ struct InertialBench {
 
   /// Begins the frame at the next time.
   void begin() {
-    time = frames++ / 30.0;
+    time = frames++ / frame_rate;
     if (!timeline) timeline.emplace(samples);
     SensorFrame frame;
     frame.timestamp = time;
@@ -90,14 +90,14 @@ struct InertialBench {
   }
   /// Frames up to a time [s] that the images determine.
   void track(double until) {
-    while (frames / 30.0 < until - 1e-9) {
+    while (frames / frame_rate < until - 1e-9) {
       begin();
       found(measured(time));
     }
   }
   /// Frames up to a time that only inertia determines.
   void bridge(double until) {
-    while (frames / 30.0 < until - 1e-9) {
+    while (frames / frame_rate < until - 1e-9) {
       begin();
       ASSERT_TRUE(motion.prediction());
       last = motion.prediction()->T_camera_world;
@@ -116,6 +116,7 @@ struct InertialBench {
   Random random;
   bool at_rest;
   double unit;
+  double frame_rate = 30.0;  // [Hz]
   std::vector<ImuSample> samples;
   std::function<void(std::vector<ImuSample>&)> change;
   std::optional<ImuTimeline> timeline;
@@ -155,6 +156,54 @@ TEST(InertialMotion, StartsInMotionAndAtRest) {
     const double angle = std::acos(filter.gravity().normalized().dot(bench.T_map_world.linear() * -Vector3d::UnitZ()));
     EXPECT_LT(angle, rest ? 0.03 : 0.01);  // at rest, the bias of the accelerometer looks like an inclination
   }
+}
+
+/// The bias is that of EuRoC's gyroscope: over a second, motions do not depend on it linearly.
+TEST(InertialMotion, ASlowCameraStartsWithItsLastPoses) {
+  InertialBench bench(12.1);
+  bench.frame_rate = 1.0;
+  const Vector3d more_bias(0.0, 0.0, 0.08);
+  bench.change = [&](std::vector<ImuSample>& samples) {
+    for (ImuSample& sample : samples) sample.angular_velocity += more_bias;
+  };
+  bench.track(5.0);
+  EXPECT_FALSE(bench.motion.is_started()) << "five poses";
+  bench.track(6.0);
+  ASSERT_TRUE(bench.motion.is_started());
+  bench.track(9.0);
+  EXPECT_FALSE(bench.motion.is_reliable()) << "three predictions";
+  bench.track(11.0);
+  ASSERT_TRUE(bench.motion.is_reliable());
+  const InertialFilter& filter = *bench.motion.filter();
+  EXPECT_LT((filter.state().bias.gyroscope - bench.bias.gyroscope - more_bias).norm(), 0.002);
+  EXPECT_LT((filter.state().velocity - bench.T_map_world.linear() * bench.state(bench.time).velocity).norm(), 0.05);
+  bench.begin();
+  EXPECT_LT(bench.distance(), 0.05);
+  EXPECT_LT(bench.distance(), 3.0 * std::sqrt(3.0) * bench.motion.prediction()->position_deviation);
+}
+
+TEST(InertialMotion, FewPosesOfAFastCameraAreNoStart) {
+  InertialBench bench(8.0);
+  while (bench.frames < 210) {
+    bench.begin();
+    if (bench.frames % 30 == 0)
+      bench.found(bench.measured(bench.time));
+    else
+      bench.motion.lost();
+    EXPECT_FALSE(bench.motion.is_started());
+  }
+}
+
+TEST(InertialMotion, OverASecondDeviationsGrowWithTheTime) {
+  const std::vector<ImuSample> rest = {{0.0, Vector3d::Zero(), -gravity}, {5.0, Vector3d::Zero(), -gravity}};
+  const ImuNoise noise{1e-9, 2e-3, 1e-9, 1e-9};
+  const auto deviation = [&](double seconds) {
+    InertialFilter filter(InertialState{}, gravity, {});
+    filter.predict(*geometry::preintegrate(rest, 0.0, seconds, noise, {}, 10.0), Vector3d::Zero());
+    return filter.deviations().velocity;
+  };
+  EXPECT_NEAR(deviation(0.1) / deviation(0.025), 2.0, 0.1);
+  EXPECT_NEAR(deviation(2.0) / deviation(0.5), 4.0, 0.2);
 }
 
 TEST(InertialMotion, WithoutAnImuNothingIsPredicted) {

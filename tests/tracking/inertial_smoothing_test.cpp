@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -245,6 +246,27 @@ TEST_F(InertialSmoothingTest, LongTrajectoriesAreSolvedInPieces) {
   for (int i = frame_count; i < 940; ++i) add_frame(i, false, i >= 890 && i <= 920);
   EXPECT_EQ(smooth(), 939U);
   EXPECT_LT(largest_error(), 0.005);
+}
+
+/// White noise of the poses; each piece alone would end with an error of its own.
+TEST_F(InertialSmoothingTest, PiecesMeetWithoutAStep) {
+  for (int i = frame_count; i < 1000; ++i) add_frame(i);
+  Random random(3);
+  for (const TimedPose& pose : history.trajectory(map)) {
+    if (pose.timestamp == 0.0) continue;
+    Eigen::Isometry3d disturbed = pose.T_world_camera;
+    disturbed.translation() += 0.005 * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
+    history.replace(pose.timestamp, disturbed.inverse(), map);
+  }
+  smooth();
+  const Trajectory poses = history.trajectory(map);
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < poses.size(); ++i)
+    steps.push_back((poses[i].T_world_camera.translation() - pose_at(poses[i].timestamp).translation() -
+                     poses[i - 1].T_world_camera.translation() + pose_at(poses[i - 1].timestamp).translation())
+                        .norm());
+  const double at_cut = steps[899];
+  EXPECT_LT(at_cut, 2.0 * *std::max_element(steps.begin() + 500, steps.begin() + 890));
 }
 
 TEST_F(InertialSmoothingTest, StaysAfterAnInterruption) {

@@ -31,6 +31,9 @@ struct InertialPrediction : PredictedPose {
 /// nothing. Where gravity, biases and scale are known, from the map or from before a gap, a filter begins with the
 /// first pose, and learns the velocity from the next ones.
 ///
+/// A slow camera, which takes fewer frames in the time of the start than it needs, starts with its last six poses, up
+/// to 5 s apart; a prediction over more than 0.2 s counts as three.
+///
 /// For each frame, begin_frame() is called first, then follow_map(), and one of found(), bridged() and lost() last.
 /// Poses are those of the camera in the map. Deterministic. One thread.
 class InertialMotion {
@@ -100,6 +103,8 @@ class InertialMotion {
     double position = 0.0, rotation = 0.0;
   };
 
+  void remember_frame();
+  bool is_slow_camera() const;
   bool saturates(const SensorFrame& frame) const;
   Eigen::Isometry3d body_pose(const Eigen::Isometry3d& T_camera_world) const;
   Eigen::Isometry3d camera_pose(const Eigen::Isometry3d& T_world_body) const;
@@ -123,6 +128,7 @@ class InertialMotion {
   double scale_ = 1.0;
   PoseDeviations deviations_;                                  // as the start found them
   int confirmations_ = 0, contradictions_ = 0, refusals_ = 0;  // the latter two in a row
+  int weight_ = 1;                                             // of the current frame in these
   bool is_refused_ = false;                                    // the current frame is counted in refusals_
   bool is_corrected_ = false;                                  // now_ knows the current pose
   double mean_turn_rate_ = 0.0;                                // of the current frame [rad/s]
@@ -133,6 +139,7 @@ class InertialMotion {
   // Of the start.
   std::vector<ImuSample> samples_;
   std::vector<double> tracked_;  // time stamps [s]
+  std::vector<double> frames_;   // of all frames, tracked or not [s]
   double next_start_ = 0.0;      // [s]
 };
 
