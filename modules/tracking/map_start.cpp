@@ -4,7 +4,26 @@
 #include <algorithm>
 #include <cmath>
 
+#include "holdfast/tracking/view_motion.hpp"
+
 namespace holdfast {
+
+namespace {
+
+/// Corrects the rolling shutter of the current frame before there is a map that could tell the motion of the camera.
+/// False if its rotation is not known: two views with rows displaced by a fast rotation begin a wrong map.
+bool correct_rows_without_map(TrackingContext& context, const SensorFrame& sensor_frame, StageTimes& times) {
+  if (!context.shutter.is_active()) return true;
+  constexpr int rounds = 2;  // the previous frame is corrected; the second one compares corrected features
+  for (int round = 0; round < rounds; ++round) {
+    const std::optional<FrameMotion> motion = rotation_since(context.previous, context.current);
+    if (!motion) return false;
+    context.builder.place_features(sensor_frame, *motion, false, context.shutter, context.map, context.current, times);
+  }
+  return true;
+}
+
+}  // namespace
 
 void MapStart::mark_begun(FrameResult& result) {
   time_ = context_.last_feature_time = context_.current.timestamp;
@@ -104,6 +123,10 @@ bool TwoViewStart::begin(const SensorFrame& sensor_frame, FrameResult& result) {
   moving_world.evaluate(FilterStage::before_matching, {sensor_frame, nullptr, context_.current}, result.times);
   moving_world.weight_features(context_.current);
   const StageTimer timer(result.times, "initialisation");
+  if (!correct_rows_without_map(context_, sensor_frame, result.times)) {
+    result.failure = TrackingFailure::little_parallax;
+    return false;
+  }
   result.failure = initialiser_.add(context_.current);
   if (result.failure != TrackingFailure::none) return false;
   support_ = 0.0;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "holdfast/core/scale_pyramid.hpp"
+#include "holdfast/tracking/view_motion.hpp"
 
 namespace holdfast {
 namespace {
@@ -101,6 +102,26 @@ TEST_F(RollingShutterTest, FeaturesWithoutDepthAreCorrectedForRotation) {
   RollingShutter(RollingShutterMode::fixed, readout).correct(motion, Map(), frame);
   EXPECT_LT(largest_error(frame), 0.02);
   for (const float depth : frame.depth) EXPECT_EQ(depth, 0.0F);
+}
+
+TEST_F(RollingShutterTest, WithoutAMapTheRotationIsThatOfMatchedFeatures) {
+  const FrameMotion motion = motion_of({0.05, 0.0, 0.0}, {0.5, 1.5, -0.8});
+  Frame previous = take(Eigen::Isometry3d::Identity(), motion), frame = take(motion.during(interval), motion);
+  std::mt19937_64 random(2);
+  for (Frame* each : {&previous, &frame}) each->depth.assign(world_.size(), 0.0F), each->features.descriptors.clear();
+  for (std::size_t i = 0; i < world_.size(); ++i) {
+    const Descriptor256 descriptor{{random(), random(), random(), random()}};
+    previous.features.descriptors.push_back(descriptor);
+    frame.features.descriptors.push_back(descriptor);
+  }
+  EXPECT_FALSE(rotation_since(previous, frame)) << "no time has passed";
+  frame.timestamp = interval;
+  EXPECT_FALSE(rotation_since(Frame(), frame)) << "there is no previous frame";
+  const std::optional<FrameMotion> found = rotation_since(previous, frame);
+  ASSERT_TRUE(found);
+  EXPECT_GT(largest_error(frame), 10.0);
+  RollingShutter(RollingShutterMode::fixed, readout).correct(*found, Map(), frame);
+  EXPECT_LT(largest_error(frame), 1.0);
 }
 
 TEST_F(RollingShutterTest, FeaturesWithoutDepthHaveThatOfTheirMapPoints) {
