@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "holdfast/core/coarse_cells.hpp"
 #include "holdfast/core/depth_noise.hpp"
@@ -30,32 +29,6 @@ bool DepthAgreement::choose(const Map& map, KeyFrameId reference, double timesta
           timestamp - frame.timestamp >= settings_.depth_check_age || !want_old)
         take(frame);
   }
-  return !keyframes_.empty();
-}
-
-bool DepthAgreement::choose_static_views(const Map& map, const Frame& frame) {
-  constexpr double min_cosine = 0.866;  // 30 degrees
-  constexpr double max_distance = 1.0;  // m
-  const Eigen::Isometry3d T_view_world = frame.T_view_world();
-  const Eigen::Vector3d centre = T_view_world.inverse().translation();
-  const Eigen::Vector3d direction = T_view_world.linear().row(2);
-  std::vector<std::pair<std::size_t, const Frame*>> by_depth;  // number of cells
-  map.keyframes().for_each([&](KeyFrameId, const KeyFrame& keyframe) {
-    const CoarseView& view = keyframe.frame.coarse;
-    if (view.empty() || !(view.grid == frame.coarse.grid)) return;
-    const Eigen::Isometry3d T_world_camera = keyframe.frame.T_world_camera();
-    if (direction.dot(T_world_camera.linear().col(2)) < min_cosine ||
-        (T_world_camera.translation() - centre).norm() > max_distance)
-      return;
-    std::size_t cells = 0;
-    for (std::size_t i = 0; i < view.depth.size(); ++i)
-      cells += view.depth[i] > 0.0F && (view.static_log_odds.empty() || view.static_log_odds[i] >= 0.0F) ? 1 : 0;
-    by_depth.emplace_back(cells, &keyframe.frame);
-  });
-  std::stable_sort(by_depth.begin(), by_depth.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  keyframes_.clear();
-  for (const auto& [cells, keyframe] : by_depth)
-    if (keyframes_.size() < static_cast<std::size_t>(settings_.depth_check_keyframes)) keyframes_.push_back(keyframe);
   return !keyframes_.empty();
 }
 

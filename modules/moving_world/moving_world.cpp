@@ -74,11 +74,7 @@ bool MovingWorld::contradicts_depth(const Frame& frame, int inliers, bool was_lo
            depth_agreement_.unoccluded_share(frame, frame.T_view_world()) < limits.fallback_share;
   if (filters_.empty() || inliers >= (was_lost ? limits.depth_check_inliers_lost : limits.depth_check_inliers))
     return false;
-  // Beside people a pair has no depth, because they hide the scene from the other camera: around the reference there
-  // is little to compare with.
-  const bool has_views = map_.sensor() == Sensor::stereo ? depth_agreement_.choose_static_views(map_, frame)
-                                                         : depth_agreement_.choose(map_, reference, frame.timestamp);
-  if (!has_views) return false;
+  if (!depth_agreement_.choose(map_, reference, frame.timestamp)) return false;
   return depth_agreement_.agreeing_share(frame, frame.T_view_world()) <
          (was_lost ? limits.depth_check_share_lost : limits.depth_check_share);
 }

@@ -83,17 +83,17 @@ StartWindow start_window(bool scale_is_known, double now, bool is_slow) {
   const double spacing = scale_is_known ? pose_spacing : pose_spacing_of_one_camera;
   if (is_slow)
     return {time, spacing, largest_pose_gap_of_slow_camera, fewest_poses_of_slow_camera, now - longest_start_time};
-  return {time, spacing, largest_pose_gap, fewest_poses, now - time - spacing};
+  return {time, spacing, largest_pose_gap, fewest_poses, now - time - largest_pose_gap};
 }
 
-/// Chooses poses of tracked frames, `spacing` apart, from the last one backwards to the first gap, or until they are
-/// enough for a slow camera.
-StartPoses choose_start_poses(const std::vector<double>& tracked, const StartWindow& window, bool is_slow,
+/// Chooses poses of tracked frames, `spacing` apart, from the last one backwards until they are enough, or to the first
+/// gap.
+StartPoses choose_start_poses(const std::vector<double>& tracked, const StartWindow& window,
                               const InertialMotion::PastPose& past_pose) {
   StartPoses chosen;
   for (auto stamp = tracked.rbegin(); stamp != tracked.rend() && *stamp > window.earliest; ++stamp) {
     const std::vector<double>& stamps = chosen.stamps;
-    if (is_slow && stamps.size() >= window.fewest && stamps.front() - stamps.back() >= window.time) break;
+    if (stamps.size() >= window.fewest && stamps.front() - stamps.back() >= window.time) break;
     if (!stamps.empty() && stamps.back() - *stamp < window.spacing) continue;
     if (!stamps.empty() && stamps.back() - *stamp > window.largest_gap) break;
     const std::optional<Eigen::Isometry3d> T_camera_world = past_pose(*stamp);
@@ -117,6 +117,14 @@ std::optional<std::vector<geometry::Preintegration>> preintegrate_between(const 
     motions.push_back(*motion);
   }
   return motions;
+}
+
+/// False for the biases of a solution that diverged.
+bool is_possible(const ImuBias& bias) {
+  constexpr double most_deviations = 10.0;
+  const geometry::InertialStartOptions priors;
+  return bias.gyroscope.norm() < most_deviations * priors.gyroscope_bias_deviation &&
+         bias.accelerometer.norm() < most_deviations * priors.accelerometer_bias_deviation;
 }
 
 /// Whether the motions depend linearly on biases up to these.
@@ -423,12 +431,12 @@ void InertialMotion::try_to_start(const PastPose& past_pose) {
                                        [&](const ImuSample& sample) { return sample.timestamp >= earliest; });
   if (first_kept != samples_.begin()) samples_.erase(samples_.begin(), std::prev(first_kept));
 
-  const StartPoses start_poses = choose_start_poses(tracked_, window, is_slow, past_pose);
+  const StartPoses start_poses = choose_start_poses(tracked_, window, past_pose);
   const std::vector<double>& stamps = start_poses.stamps;
   if (stamps.size() < window.fewest || now - stamps.front() < window.time) return;
   next_start_ = now + start_interval;
-  auto motions = preintegrate_between(samples_, stamps, imu_->noise, {});
-  if (!motions) return;
+  const auto unbiased_motions = preintegrate_between(samples_, stamps, imu_->noise, {});
+  if (!unbiased_motions) return;
   const std::vector<Eigen::Isometry3d>& poses = start_poses.T_world_camera;
   std::vector<Eigen::Vector3d> rates;
   for (const double stamp : stamps) rates.push_back(rate_at(samples_, stamp));
@@ -442,11 +450,13 @@ void InertialMotion::try_to_start(const PastPose& past_pose) {
   for (const PoseDeviations& deviations : std::span(possible_deviations).subspan(is_slow ? 1 : 0, 3)) {
     options.position_deviation = deviations.position;
     options.rotation_deviation = deviations.rotation;
+    auto motions = unbiased_motions;
     const auto solve = [&] { return geometry::start_inertially(poses, *motions, imu_->T_body_camera, options, rates); };
     geometry::InertialStart start = solve();
     // Motions depend on the biases linearly between poses that are close in time only.
-    for (int i = 0; i < most_integrations && !is_linear(*motions, start.bias); ++i) {
+    for (int i = 0; i < most_integrations && !is_linear(*motions, start.bias) && is_possible(start.bias); ++i) {
       motions = preintegrate_between(samples_, stamps, imu_->noise, start.bias);
+      if (!motions) return;
       start = solve();
     }
     if (!start.usable) continue;

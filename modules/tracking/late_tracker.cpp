@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "holdfast/core/sensor.hpp"
 #include "holdfast/geometry/pose_problem.hpp"
-#include "holdfast/tracking/pose_checks.hpp"
 
 namespace holdfast {
 
@@ -15,7 +15,7 @@ void LateTracker::keep(const Frame& frame) {
   if (settings_.late_frames == 0) return;
   if (static_cast<int>(frames_.size()) >= settings_.late_frames) frames_.pop_front();
   frames_.push_back(frame);
-  frames_.back().static_probability.assign(frame.size(), 1.0F);
+  if (!features_have_depth(parts_.map.sensor())) frames_.back().static_probability.assign(frame.size(), 1.0F);
 }
 
 void LateTracker::finish(StageTimes& times, const std::atomic<bool>& stop) {
@@ -90,7 +90,7 @@ bool LateTracker::fits_map(Frame& frame) {
   const KeyFrameId reference = parts_.matcher.local_map().reference_keyframe();
   if (inliers < settings_.relocalisation_inliers ||
       inliers < settings_.relocalisation_chance * parts_.estimator.matches() ||
-      parts_.estimator.position_deviation() > maximum_deviation_after_loss(settings_, parts_.map.sensor()) ||
+      parts_.estimator.position_deviation() > settings_.maximum_deviation ||
       parts_.map.find_keyframe(reference) == nullptr || !is_reachable(frame))
     return false;
   parts_.history.add_past(frame, reference, parts_.map);

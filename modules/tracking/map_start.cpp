@@ -12,13 +12,21 @@ namespace {
 
 /// Corrects the rolling shutter of the current frame before there is a map that could tell the motion of the camera.
 /// False if its rotation is not known: two views with rows displaced by a fast rotation begin a wrong map.
-bool correct_rows_without_map(TrackingContext& context, const SensorFrame& sensor_frame, StageTimes& times) {
-  if (!context.shutter.is_active()) return true;
-  constexpr int rounds = 2;  // the previous frame is corrected; the second one compares corrected features
+bool correct_rows_without_map(TrackingContext& context, const FeatureMatcher& matcher, const SensorFrame& sensor_frame,
+                              StageTimes& times) {
+  Frame& frame = context.current;
+  const bool is_first = context.previous.size() == 0;
+  // Over a longer time than that of TrackingContext::interval(), the mean rotation does not tell that at the exposure.
+  constexpr double longest_interval = 0.2;  // s
+  if (!context.shutter.is_active() || (!is_first && frame.timestamp - context.previous.timestamp > longest_interval))
+    return true;
+  const float max_distance =
+      distance_limit(context.settings.strict_distance, frame.features.descriptors.type().strict_distance);
+  constexpr int rounds = 2;  // the second one compares corrected features
   for (int round = 0; round < rounds; ++round) {
-    const std::optional<FrameMotion> motion = rotation_since(context.previous, context.current);
+    const std::optional<FrameMotion> motion = rotation_since(context.previous, frame, matcher, max_distance);
     if (!motion) return false;
-    context.builder.place_features(sensor_frame, *motion, false, context.shutter, context.map, context.current, times);
+    context.builder.place_features(sensor_frame, *motion, false, context.shutter, context.map, frame, times);
   }
   return true;
 }
@@ -112,7 +120,9 @@ std::optional<int> DepthStart::kept_frames(TrackerState, const FrameResult&) con
 }
 
 TwoViewStart::TwoViewStart(TrackingContext& context, const TrackerParts& parts)
-    : MapStart(context), initialiser_(context.settings, parts.optimizer, parts.seed, parts.matcher) {}
+    : MapStart(context),
+      matcher_(parts.matcher),
+      initialiser_(context.settings, parts.optimizer, parts.seed, parts.matcher) {}
 
 bool TwoViewStart::begin(const SensorFrame& sensor_frame, FrameResult& result) {
   MovingWorld& moving_world = context_.moving_world;
@@ -123,8 +133,10 @@ bool TwoViewStart::begin(const SensorFrame& sensor_frame, FrameResult& result) {
   moving_world.evaluate(FilterStage::before_matching, {sensor_frame, nullptr, context_.current}, result.times);
   moving_world.weight_features(context_.current);
   const StageTimer timer(result.times, "initialisation");
-  if (!correct_rows_without_map(context_, sensor_frame, result.times)) {
-    result.failure = TrackingFailure::little_parallax;
+  const bool is_first = context_.previous.size() == 0;
+  if (static_cast<int>(static_features(context_.current).size()) >= context_.settings.minimum_start_points &&
+      !correct_rows_without_map(context_, matcher_, sensor_frame, result.times)) {
+    result.failure = is_first ? TrackingFailure::little_parallax : TrackingFailure::few_matches;
     return false;
   }
   result.failure = initialiser_.add(context_.current);

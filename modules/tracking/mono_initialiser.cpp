@@ -10,17 +10,11 @@
 #include "holdfast/geometry/two_view_certainty.hpp"
 #include "holdfast/interfaces/frame_observations.hpp"
 #include "holdfast/matching/rotation_consistency.hpp"
+#include "holdfast/tracking/view_motion.hpp"
 
 namespace holdfast {
 
 namespace {
-
-std::vector<std::uint32_t> static_features(const Frame& frame) {
-  std::vector<std::uint32_t> features;
-  for (std::uint32_t i = 0; i < frame.size(); ++i)
-    if (is_static(frame, i)) features.push_back(i);
-  return features;
-}
 
 geometry::PixelPair pixel_pair(const Frame& a, std::uint32_t in_a, const Frame& b, std::uint32_t in_b) {
   const auto sigma2 = [](const Frame& frame, std::uint32_t feature) {

@@ -58,8 +58,10 @@ bool PoseChecks::accepts(const FrameResult& result, const PoseSituation& situati
   const bool may_be_anywhere = has_ample_inliers(result.inliers) || situation.may_be_anywhere;
   if (was_lost && !context_.relocaliser.is_beyond_chance(result.inliers)) return false;
   if (was_lost && !may_be_anywhere && !context_.relocaliser.is_reachable(context_.current, 0.0)) return false;
-  if (was_lost &&
-      context_.estimator.position_deviation() > maximum_deviation_after_loss(context_.settings, context_.map.sensor()))
+  // Few disparities, or far ones, agree with a wrong pose as well.
+  constexpr double certain = 0.5;
+  if (was_lost && context_.map.sensor() == Sensor::stereo &&
+      context_.estimator.position_deviation() > certain * context_.settings.maximum_deviation)
     return false;
   if (was_lost && !has_ample_inliers(result.inliers) && contradicts_measured_motion(result.inliers)) return false;
   return !lacks_support(result, situation.map_age) && !is_refuted(result.inliers, was_lost);

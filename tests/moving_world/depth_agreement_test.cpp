@@ -116,25 +116,6 @@ TEST_F(DepthAgreementTest, WhatMovedInAKeyframeDoesNotCount) {
   EXPECT_GE(agreement.agreeing_share(frame, origin), 0.99);
 }
 
-TEST_F(DepthAgreementTest, StaticViewsShowWhatACrowdHidAroundTheReference) {
-  map.add_keyframe(furnished_room().frame(origin, 0.0, 40));  // shares no points with the others
-  KeyFrameId reference;
-  for (const double timestamp : {1.0, 1.1, 1.2, 1.3}) {
-    reference = keyframe(with_person(0.0), timestamp);
-    CoarseView& view = map.keyframe(reference).frame.coarse;
-    view.static_log_odds.assign(view.depth.size(), -1.0F);
-  }
-  Frame frame = furnished_room().frame(origin, 3.0);
-  ASSERT_TRUE(agreement.choose(map, reference, 3.0));
-  EXPECT_EQ(agreement.agreeing_share(frame, origin), 0.0);
-  ASSERT_TRUE(agreement.choose_static_views(map, frame));
-  EXPECT_GE(agreement.agreeing_share(frame, origin), 0.99);
-  for (const Isometry3d& elsewhere : {pose(60, Vector3d::Zero()), pose(0, {0, 0, -1.5})}) {
-    frame.T_camera_world = elsewhere.inverse();
-    EXPECT_FALSE(agreement.choose_static_views(map, frame));
-  }
-}
-
 TEST_F(DepthAgreementTest, TooLittleInCommonIsNoAgreement) {
   ASSERT_TRUE(agreement.choose(map, keyframe(furnished_room(), 0.0), 2.0));
   const Frame frame = furnished_room().frame(origin, 2.0);

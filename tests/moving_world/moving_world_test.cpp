@@ -341,19 +341,6 @@ TEST_F(MovingWorldDepth, FewInliersMustNotContradictTheRoom) {
   EXPECT_FALSE(world.contradicts_depth(frame, 60, true, reference));
 }
 
-TEST_F(MovingWorldDepth, APairIsComparedWithTheViewsOfTheStaticScene) {
-  // A crowd fills the view of the reference.
-  Frame crowd = room().frame(at(0.0), 1.0);
-  crowd.coarse.static_log_odds.assign(crowd.coarse.depth.size(), -1.0F);
-  const KeyFrameId last = map.add_keyframe(crowd);
-  Frame frame = room().frame(at(0.1), 2.0);
-  EXPECT_TRUE(world.contradicts_depth(frame, 40, true, last));  // nothing to compare with
-  map.set_sensor(Sensor::stereo);
-  EXPECT_FALSE(world.contradicts_depth(frame, 40, true, last));
-  frame.T_camera_world.translation().z() -= 0.5;
-  EXPECT_TRUE(world.contradicts_depth(frame, 40, true, last));
-}
-
 TEST_F(MovingWorldDepth, WhatWasNotThereMayFillTheView) {
   const Isometry3d here = at(0.1);
   Frame frame = room().frame(here, 2.0);

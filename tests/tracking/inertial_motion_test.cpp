@@ -182,6 +182,17 @@ TEST(InertialMotion, ASlowCameraStartsWithItsLastPoses) {
   EXPECT_LT(bench.distance(), 3.0 * std::sqrt(3.0) * bench.motion.prediction()->position_deviation);
 }
 
+/// Ten poses of these rates span less than the two seconds that a start needs, eleven more than two seconds and a tenth.
+TEST(InertialMotion, StartsAtRatesThatDoNotDivideItsTime) {
+  for (const double rate : {4.6, 5.2, 5.6}) {
+    SCOPED_TRACE(rate);
+    InertialBench bench(5.1);
+    bench.frame_rate = rate;
+    bench.track(4.0);
+    EXPECT_TRUE(bench.motion.is_started());
+  }
+}
+
 TEST(InertialMotion, FewPosesOfAFastCameraAreNoStart) {
   InertialBench bench(8.0);
   while (bench.frames < 210) {

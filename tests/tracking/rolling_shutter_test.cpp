@@ -114,10 +114,11 @@ TEST_F(RollingShutterTest, WithoutAMapTheRotationIsThatOfMatchedFeatures) {
     previous.features.descriptors.push_back(descriptor);
     frame.features.descriptors.push_back(descriptor);
   }
-  EXPECT_FALSE(rotation_since(previous, frame)) << "no time has passed";
+  const auto rotation = [&](const Frame& before) { return rotation_since(before, frame, nearest_matcher(), 50.0F); };
+  EXPECT_FALSE(rotation(previous)) << "no time has passed";
   frame.timestamp = interval;
-  EXPECT_FALSE(rotation_since(Frame(), frame)) << "there is no previous frame";
-  const std::optional<FrameMotion> found = rotation_since(previous, frame);
+  EXPECT_FALSE(rotation(Frame())) << "there is no previous frame";
+  const std::optional<FrameMotion> found = rotation(previous);
   ASSERT_TRUE(found);
   EXPECT_GT(largest_error(frame), 10.0);
   RollingShutter(RollingShutterMode::fixed, readout).correct(*found, Map(), frame);

@@ -19,9 +19,6 @@ class DepthAgreement {
   /// Selects keyframes around `reference` for the comparison. Old ones are preferred, because people have moved farther
   /// since. False if there are none. The selection is valid until the map changes.
   bool choose(const Map& map, KeyFrameId reference, double timestamp);
-  /// Selects the keyframes with the most static depth among those whose view is near that of the frame (within 1 m and
-  /// 30 degrees) instead. Keyframes made in a crowd show little of the scene. False if there are none.
-  bool choose_static_views(const Map& map, const Frame& frame);
   /// Share of the compared cells whose depth agrees with a keyframe's, 0 to 1; 0 when too few can be compared.
   double agreeing_share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
   /// True if enough cells can be compared and less than `least_share` of them agree.

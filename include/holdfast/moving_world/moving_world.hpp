@@ -90,9 +90,8 @@ class MovingWorld {
   /// keyframes around `reference`, because matches on moving objects have then biased the pose. Then estimates
   /// coarse.T_view_camera. Adds the stage "filters".
   void check_pose(const PosePrediction& prediction, KeyFrameId reference, Frame& frame, StageTimes& times);
-  /// * Whether a pose with this number of inliers contradicts the depth of the keyframes around `reference` or, with a
-  /// pair, of those near the view that show most of the static scene. The limits are stricter after a loss, see
-  /// EvidenceSettings.
+  /// * Whether a pose with this number of inliers contradicts the depth of the keyframes around `reference`. The limits
+  /// are stricter after a loss, see EvidenceSettings.
   bool contradicts_depth(const Frame& frame, int inliers, bool was_lost, KeyFrameId reference);
   /// * True if keyframes around `reference` predict depth for this view but almost none of it is observed: something
   /// large occludes the static scene, and the inliers may lie on it. False if the keyframes predict no depth.

@@ -31,8 +31,8 @@ struct InertialPrediction : PredictedPose {
 /// nothing. Where gravity, biases and scale are known, from the map or from before a gap, a filter begins with the
 /// first pose, and learns the velocity from the next ones.
 ///
-/// A slow camera, which takes fewer frames in the time of the start than it needs, starts with its last six poses, up
-/// to 5 s apart; a prediction over more than 0.2 s counts as three.
+/// A slow camera, which takes fewer frames in the time of the start than it needs, starts with its last poses, at least
+/// six of the last 15 s; a prediction over more than 0.2 s counts as three.
 ///
 /// For each frame, begin_frame() is called first, then follow_map(), and one of found(), bridged() and lost() last.
 /// Poses are those of the camera in the map. Deterministic. One thread.

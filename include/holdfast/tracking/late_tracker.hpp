@@ -15,9 +15,9 @@
 namespace holdfast {
 
 /// Locates frames without a pose in the finished map: those before a map began, and those of losses that backward
-/// tracking did not bridge because the map did not show their view yet. Features are kept, images are not. All of them
-/// count as static: the masks of such frames are often old, and the finished map has no people that they could match.
-/// One thread, within a MapAccess.
+/// tracking did not bridge because the map did not show their view yet. Features are kept, images are not. With one
+/// camera all of them count as static: the masks of such frames are often old, and the finished map has no people that
+/// they could match. One thread, within a MapAccess.
 ///
 /// A frame is matched with the frame located before it or, if none is near in time, by descriptors with the keyframes
 /// nearest in time (PnP with RANSAC); both are followed by the guided search in the local map. It is tried latest first

@@ -123,6 +123,7 @@ class TwoViewStart final : public MapStart {
   void map_begun(KeyFrameId reference, const std::vector<MapPointId>& points) override;
 
  private:
+  const FeatureMatcher& matcher_;
   MonoInitialiser initialiser_;
   int weak_starts_ = 0;
   double support_ = 0.0;  // sum over the frames that judge the start

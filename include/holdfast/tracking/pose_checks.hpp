@@ -14,12 +14,6 @@ struct PoseSituation {
   double map_age = 0.0;          ///< time since the map was started or restarted [s]; infinite for a loaded map
 };
 
-/// Maximum standard deviation of the position of a pose that no previous frame predicts [m]. With a pair it is half of
-/// TrackingSettings::maximum_deviation: few disparities, or far ones, agree with a wrong pose as well.
-inline double maximum_deviation_after_loss(const TrackingSettings& settings, Sensor sensor) {
-  return (sensor == Sensor::stereo ? 0.5 : 1.0) * settings.maximum_deviation;
-}
-
 /// Acceptance tests of an adjusted pose: number of inliers, inertia, covariance of the position, agreement with the
 /// dense depth of keyframes. Used by FrameTracker and the first-pose methods. Keeps no state. One thread, within the
 /// MapAccess of Tracker::locate().
