@@ -63,11 +63,9 @@ void InertialFilter::predict(const geometry::Preintegration& motion, const Eigen
   transition.topLeftCorner<15, 15>() = -inverse * jacobians.first;
   transition.block<15, 3>(0, gravity_index) = -inverse * jacobians.gravity;
   covariance_ = (transition * covariance_ * transition.transpose()).eval();
-  // Not that of the biases, whose random walk grows with the time as it is.
-  geometry::Vector15d factors = geometry::Vector15d::Ones();
-  factors.head<9>().setConstant(std::sqrt(std::max(1.0, motion.duration() / white_noise_time)));
-  const geometry::Matrix15d weighted = inverse * factors.asDiagonal();
-  covariance_.topLeftCorner<15, 15>() += weighted * motion.covariance() * weighted.transpose();
+  // Of the biases too: errors of scale and axes act as biases that change with the motion.
+  const double model_factor = std::max(1.0, motion.duration() / white_noise_time);
+  covariance_.topLeftCorner<15, 15>() += model_factor * inverse * motion.covariance() * inverse.transpose();
   covariance_.block<3, 3>(gravity_index, gravity_index) +=
       direction_walk * direction_walk * motion.duration() * gravity_.squaredNorm() * tangent_projector(gravity_);
   const double turn = rate_error * geometry::log_so3(motion.delta().rotation).norm();

@@ -114,7 +114,7 @@ TEST(UnetSegmenter, WithItsMirrorImageLeftAndRightAreAlike) {
 
 TEST(UnetSegmenter, ASecondLookFindsMoreOfPeopleWhoAreFarAway) {
   // The view of a person fills a quarter of the image of an empty room: there the person has half the size.
-  simulation::Simulator room = room_with("{ at: [2.0, 4.5] }");
+  simulation::Simulator room = room_with("{ at: [2.5, 3.5] }");
   const SensorFrame near = room.frame(0);
   const cv::Rect part(100, 300, 640, 480);
   SensorFrame frame = room_with("").frame(0);
