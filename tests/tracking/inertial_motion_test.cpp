@@ -182,7 +182,8 @@ TEST(InertialMotion, ASlowCameraStartsWithItsLastPoses) {
   EXPECT_LT(bench.distance(), 3.0 * std::sqrt(3.0) * bench.motion.prediction()->position_deviation);
 }
 
-/// Ten poses of these rates span less than the two seconds that a start needs, eleven more than two seconds and a tenth.
+/// Ten poses of these rates span less than the two seconds that a start needs, eleven more than two seconds and a
+/// tenth.
 TEST(InertialMotion, StartsAtRatesThatDoNotDivideItsTime) {
   for (const double rate : {4.6, 5.2, 5.6}) {
     SCOPED_TRACE(rate);

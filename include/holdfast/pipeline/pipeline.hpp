@@ -122,8 +122,8 @@ class Pipeline {
   /// nothing, also after an exception. Rethrows exceptions of the pipeline's threads.
   void finish();
   /// Ends running bundle adjustments after their current iteration, and the waits of observers (Observer::interrupt()),
-  /// both for the rest of the run: a viewer no longer pauses, and finish() neither adjusts nor smooths again, and locates
-  /// no further frames. Any thread, also during feed() and finish().
+  /// both for the rest of the run: a viewer no longer pauses, and finish() neither adjusts nor smooths again, and
+  /// locates no further frames. Any thread, also during feed() and finish().
   void interrupt();
 
   /// Health of the last frame, as a robot acts on it, and whether frames still arrive: the state is stalled if there
