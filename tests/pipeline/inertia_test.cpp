@@ -19,6 +19,20 @@
 namespace holdfast {
 namespace {
 
+/// Of a camera with a bmi055 whose measurements tracking uses or not.
+PipelineBuilder builder(const Camera& camera, Sensor sensor, int features, bool inertia = true) {
+  TrackingSettings tracking;
+  tracking.inertia = inertia;
+  PipelineBuilder result;
+  result.camera(camera)
+      .sensor(sensor)
+      .imu(*find_imu("bmi055"))
+      .features(OrbSettings{.count = features})
+      .optimizer(SchurSettings{})
+      .tracking(tracking);
+  return result;
+}
+
 /// A camera among objects that rest. Its lens is covered for 0.8 s.
 class InertiaTest : public ::testing::Test {
  protected:
@@ -39,19 +53,9 @@ class InertiaTest : public ::testing::Test {
     }
   }
   Run run(bool is_inertial) const {
-    TrackingSettings tracking;
-    tracking.inertia = true;
     MappingSettings mapping;
     mapping.inertia = is_inertial;
-    Pipeline pipeline = PipelineBuilder()
-                            .camera(simulator_.camera())
-                            .sensor(Sensor::rgbd)
-                            .imu(imu_)
-                            .features(OrbSettings{.count = 500})
-                            .optimizer(SchurSettings{})
-                            .tracking(tracking)
-                            .mapping(mapping)
-                            .build();
+    Pipeline pipeline = builder(simulator_.camera(), Sensor::rgbd, 500).mapping(mapping).build();
     for (const SensorFrame& frame : frames_) pipeline.feed(frame);
     pipeline.finish();
     return {pipeline.trajectory(), pipeline.keyframe_trajectory(), pipeline.map().inertia()};
@@ -100,16 +104,7 @@ TEST(SlowCameraWithInertia, KeepsItsPoseWithoutAView) {
   const auto is_covered = [](double time) { return time > 13.5 && time < 14.9; };
   const auto run = [&](bool inertia) {
     simulation::ImuSensor sensor(simulator.path(), imu, 1);
-    TrackingSettings tracking;
-    tracking.inertia = inertia;
-    Pipeline pipeline = PipelineBuilder()
-                            .camera(simulator.camera())
-                            .sensor(Sensor::rgbd)
-                            .imu(imu)
-                            .features(OrbSettings{.count = 500})
-                            .optimizer(SchurSettings{})
-                            .tracking(tracking)
-                            .build();
+    Pipeline pipeline = builder(simulator.camera(), Sensor::rgbd, 500, inertia).build();
     Trajectory truth;
     for (std::uint64_t i = 0; i < simulator.frame_count(); ++i) {
       SensorFrame frame = simulator.frame(i);
@@ -136,16 +131,7 @@ struct OneCameraWithInertia : ::testing::Test {
                                                                 "duration=" + std::to_string(seconds)}),
                                     *find_camera("tum_fr3"));
     simulation::ImuSensor sensor(simulator.path(), imu, 1);
-    TrackingSettings tracking;
-    tracking.inertia = true;
-    Pipeline pipeline = PipelineBuilder()
-                            .camera(simulator.camera())
-                            .sensor(Sensor::mono)
-                            .imu(imu)
-                            .features(OrbSettings{.count = 1000})
-                            .optimizer(SchurSettings{})
-                            .tracking(tracking)
-                            .build();
+    Pipeline pipeline = builder(simulator.camera(), Sensor::mono, 1000).build();
     for (std::uint64_t i = 0; i < simulator.frame_count(); ++i) {
       SensorFrame frame = simulator.frame(i);
       frame.imu = sensor.take(frame.timestamp);
