@@ -99,21 +99,24 @@ TEST_P(Bundle, StopBeforeTheStartChangesNothing) {
 }
 
 TEST_P(Bundle, StopBetweenIterationsKeepsTheBestSoFar) {
-  const synthetic::BundleCase c = synthetic::bundle_case(camera, 3, 6, 600, 9, 0.5, 0.05, 8);
+  // Large enough that a busy machine, whose threads wait for each other by some milliseconds, sets the flag in time.
+  const synthetic::BundleCase c = synthetic::bundle_case(camera, 6, 30, 3000, 9, 0.5, 0.05, 8);
   BundleProblem full = c.problem;
   const auto optimizer = make(0.0);
   const BundleSummary unstopped = optimizer->optimize_bundle(full, go_on);
   ASSERT_GT(unstopped.iterations, 3);
   // Looks for a moment that falls into the iterations, wherever they are on this machine.
   double shortest = 0.0, longest = 2.0 * unstopped.seconds;
-  for (int attempt = 0; attempt < 40; ++attempt) {
+  for (int attempt = 0; attempt < 200; ++attempt) {
     const double delay = 0.5 * (shortest + longest);
     BundleProblem problem = c.problem;
-    std::atomic<bool> stop = false;
+    std::atomic<bool> stop = false, runs = false;
     std::thread other([&] {
+      runs = true;
       std::this_thread::sleep_for(std::chrono::duration<double>(delay));
       stop = true;
     });
+    while (!runs) std::this_thread::yield();
     const BundleSummary summary = optimizer->optimize_bundle(problem, stop);
     other.join();
     if (summary.stopped && summary.usable && summary.iterations > 0 && summary.iterations < unstopped.iterations) {
