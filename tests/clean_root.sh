@@ -189,10 +189,13 @@ make_arm64_root() {
   find "$1.part" -type l -lname '/*' | while read -r link; do
     ln -sfn "$(realpath -m --relative-to="$(dirname "$link")" "$1.part$(readlink "$link")")" "$link"
   done
-  # The packages of Ceres and FLANN name libraries by absolute paths; the prefix of a CMake package is the root's.
-  grep -rl 'LIBRARIES.*[;"]/usr/lib/aarch64-linux-gnu/' --include='*.cmake' "$1.part/usr/lib" |
-    xargs sed -i '/LIBRARIES/s|\([;"]\)/usr/lib/aarch64-linux-gnu/|\1${_IMPORT_PREFIX}/lib/aarch64-linux-gnu/|g'
+  # The packages of Ceres, FLANN and Assimp name libraries by absolute paths; the prefix of a CMake package is the root's.
+  grep -rl 'LIBRARIES.*[;":]/usr/lib/aarch64-linux-gnu/' --include='*.cmake' "$1.part/usr/lib" |
+    xargs sed -i '/LIBRARIES/s|\([;":]\)/usr/lib/aarch64-linux-gnu/|\1${_IMPORT_PREFIX}/lib/aarch64-linux-gnu/|g'
   libraries=$1.part/usr/lib/aarch64-linux-gnu
+  # Draco's, for which Assimp asks, has an absolute prefix.
+  sed -i -e 's|PREFIX "/usr"|PREFIX "${CMAKE_CURRENT_LIST_DIR}/../../../.."|' -e 's|"/usr/lib/|"${_IMPORT_PREFIX}/lib/|' \
+    "$libraries"/cmake/draco/draco-targets*.cmake
   for name in libblas liblapack; do
     for folder in ${name#lib} atlas; do  # the one that Debian's alternatives prefer last
       for file in $name.so.3 $name.so; do
