@@ -127,10 +127,14 @@ std::optional<geometry::Preintegration> InertialHistory::motion_between(std::spa
   std::vector<ImuSample> covered(first, last);
   if (std::any_of(first, last, [&](const ImuSample& sample) { return is_saturated(sample, imu_); }))
     return std::nullopt;
-  // The sample beyond the latest frame may be missing.
+  // The samples beyond the latest and the first frame may be missing.
   if (!covered.empty() && covered.back().timestamp < end && end - covered.back().timestamp <= 2.0 / imu_.rate) {
     covered.push_back(covered.back());
     covered.back().timestamp = end;
+  }
+  if (!covered.empty() && covered.front().timestamp > begin && covered.front().timestamp - begin <= 2.0 / imu_.rate) {
+    covered.insert(covered.begin(), covered.front());
+    covered.front().timestamp = begin;
   }
   std::optional<geometry::Preintegration> motion =
       geometry::preintegrate(covered, begin, end, imu_.noise, estimates.bias);

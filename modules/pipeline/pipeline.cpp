@@ -205,6 +205,7 @@ struct Pipeline::State {
   std::vector<ImuSample> imu;              ///< the first minutes, for warnings
   std::optional<InertialHistory> inertia;  ///< for adjustments
   DriftingPoses drifting;                  ///< for the smoothing at the end
+  std::vector<double> stamps;              ///< of all frames, for the same [s]
   std::atomic<bool> is_interrupted{false};
   KeyframeFlow flow;  // last: its threads end before the others go
 };
@@ -214,6 +215,7 @@ void Pipeline::State::accept(const SensorFrame& frame) {
   check_imu(frame);
   tracker.check_images(frame);
   keep_imu(frame);
+  if (inertia) stamps.push_back(frame.timestamp);
   has_frame = true;
   last_timestamp = frame.timestamp;
 }
@@ -300,6 +302,9 @@ void Pipeline::State::smooth_frames(const Trajectory& before) {
   if (adjusted && locked->inertia()) locked->set_inertia(adjusted);  // belongs to the poses, interrupted or not
   if (is_interrupted) return;
   if (!placed.empty()) tracker.follow_keyframes(locked, before);
+  drifting.longest_gap = parts.tracking.inertial_time;
+  for (const double stamp : stamps)
+    if (!tracker.pose_at(locked, stamp)) drifting.missing.push_back(stamp);
   tracker.smooth_by_inertia(locked, drifting, *inertia, *parts.optimizer, is_interrupted);
 }
 

@@ -124,6 +124,7 @@ Json frames_json(const RunRecord& record) {
           {"by_inertia", s.count(TrackingStatus::inertial)},
           {"tracked_backwards", record.losses.tracked_backwards},
           {"located_late", record.losses.located_late},
+          {"placed_by_inertia", record.losses.placed_by_inertia},
           {"withdrawn", record.losses.withdrawn},
           {"left_out", record.losses.left_out},
           {"poses", record.trajectory.size()},

@@ -139,6 +139,8 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
     rows.back().second += ", " + counted(losses.tracked_backwards, "frame") + " tracked backwards";
   if (losses.located_late > 0)
     rows.back().second += ", " + counted(losses.located_late, "frame") + " located in the finished map";
+  if (losses.placed_by_inertia > 0)
+    rows.back().second += ", " + counted(losses.placed_by_inertia, "frame") + " placed by inertia at the end";
   if (losses.withdrawn > 0) rows.back().second += ", " + counted(losses.withdrawn, "pose") + " withdrawn";
   if (losses.submaps > 0)
     rows.back().second += ", " + counted(losses.submaps, "new submap") + " begun, " +

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -29,14 +31,16 @@ constexpr double model_factor = 3.0;
 constexpr std::size_t most_frames = 900, fewest_frames = 3;  // of a chain
 /// Frames on both sides of such a chain that are solved with it and not adopted, so that chains meet without a step.
 constexpr std::size_t overlap = 60;
+/// How far from the only tracked frame beside them frames without a pose get one [s].
+constexpr double longest_prediction = 0.5;
 
-enum class Role : std::uint8_t { tracked, drifting, keyframe };
+enum class Role : std::uint8_t { tracked, drifting, missing, keyframe };
 
 /// Frames `begin` to `end` - 1 of a trajectory that inertial measurements link, tracked ones at both ends. Those from
 /// `first` to `last` - 1 are adopted.
 struct Chain {
   std::size_t begin = 0, end = 0, first = 0, last = 0;
-  std::vector<InertialHistory::Link> links;  // between indices from `begin` on
+  std::vector<InertialHistory::Link> links;  // between successive indices, from `begin` on
 };
 
 /// Of a prior, relative to measurements whose deviations are those of their noise.
@@ -62,7 +66,7 @@ Deviations upper_medians(const std::vector<Deviations>& values) {
 class InertialSmoother {
  public:
   InertialSmoother(const FrameHistory& history, Map& map, const DriftingPoses& drifting, const InertialHistory& inertia)
-      : map_(map), inertia_(inertia), trajectory_(history.trajectory(map)), smoothed_(trajectory_) {
+      : map_(map), inertia_(inertia), trajectory_(with_missing(history.trajectory(map), drifting)) {
     const std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
     const std::vector<double> stamps = linkable_stamps(map, keyframes, inertia);
     for (std::size_t i = 0; i < keyframes.size(); ++i)
@@ -73,8 +77,10 @@ class InertialSmoother {
     for (const TimedPose& pose : trajectory_) {
       const bool drifts = contains(drifting.frames, pose.timestamp) || contains(drifting.keyframes, pose.timestamp);
       const Role placed = keyframes_.contains(pose.timestamp) ? Role::keyframe : Role::tracked;
-      roles_.push_back(drifts ? Role::drifting : placed);
+      const bool is_missing = contains(drifting.missing, pose.timestamp);
+      roles_.push_back(is_missing ? Role::missing : drifts ? Role::drifting : placed);
     }
+    smoothed_.resize(trajectory_.size());
     if (const std::optional<MapInertia> estimates = inertia.estimates()) unit_ = estimates->scale;
   }
 
@@ -100,26 +106,67 @@ class InertialSmoother {
     return problem;
   }
 
-  /// Adopts the poses of a solution; returns the number of frames with a new one.
-  std::size_t take(const Chain& chain, const BundleProblem& solution) {
+  /// Adopts the poses of a solution.
+  void take(const Chain& chain, const BundleProblem& solution) {
     move_keyframes(chain, solution);
-    std::size_t count = 0;
-    for (std::size_t i = chain.first; i < chain.last; ++i) {
-      if (roles_[i] == Role::keyframe) continue;
-      smoothed_[i].T_world_camera = solution.poses[i - chain.begin].T_camera_world.inverse();
-      ++count;
-    }
-    return count;
+    for (std::size_t i = chain.first; i < chain.last; ++i)
+      if (roles_[i] != Role::keyframe) smoothed_[i] = solution.poses[i - chain.begin].T_camera_world;
   }
 
-  /// Writes all frames: where a keyframe has moved, those that are relative to it and were not smoothed stay.
-  void write(FrameHistory& history) const {
-    for (const TimedPose& pose : smoothed_)
-      if (!keyframes_.contains(pose.timestamp)) history.replace(pose.timestamp, pose.T_world_camera.inverse(), map_);
+  /// Writes all frames, if any was smoothed: where a keyframe has moved, those that are relative to it and were not
+  /// smoothed stay.
+  InertialSmoothing write(FrameHistory& history) const {
+    InertialSmoothing result;
+    for (const std::optional<Eigen::Isometry3d>& pose : smoothed_) result.smoothed += pose ? 1 : 0;
+    if (result.smoothed == 0) return result;
+    for (std::size_t i = 0; i < trajectory_.size(); ++i) {
+      const auto& [timestamp, T_world_camera] = trajectory_[i];
+      if (roles_[i] != Role::missing) {
+        if (!keyframes_.contains(timestamp))
+          history.replace(timestamp, smoothed_[i].value_or(T_world_camera.inverse()), map_);
+      } else if (smoothed_[i]) {
+        Frame frame;
+        frame.timestamp = timestamp;
+        frame.T_camera_world = *smoothed_[i];
+        history.add_past(frame, keyframe_near(timestamp), map_);
+        ++result.placed;
+      }
+    }
+    return result;
   }
 
  private:
-  bool drifts(std::size_t i) const { return roles_[i] == Role::drifting; }
+  /// The trajectory with the missing frames that are to be placed, between the poses beside them.
+  static Trajectory with_missing(const Trajectory& trajectory, const DriftingPoses& drifting) {
+    Trajectory complete = trajectory;
+    for (const double timestamp : drifting.missing) {
+      const auto after = std::find_if(trajectory.begin(), trajectory.end(),
+                                      [&](const TimedPose& pose) { return pose.timestamp > timestamp; });
+      const bool has_before = after != trajectory.begin(), has_after = after != trajectory.end();
+      constexpr double never = std::numeric_limits<double>::infinity();
+      const double since = has_before ? timestamp - std::prev(after)->timestamp : never;
+      const double until = has_after ? after->timestamp - timestamp : never;
+      const bool is_between = has_before && has_after && since + until <= drifting.longest_gap;
+      if (!is_between && std::min(since, until) > longest_prediction) continue;
+      complete.push_back({timestamp, since < until ? std::prev(after)->T_world_camera : after->T_world_camera});
+    }
+    std::sort(complete.begin(), complete.end(),
+              [](const TimedPose& a, const TimedPose& b) { return a.timestamp < b.timestamp; });
+    return complete;
+  }
+  KeyFrameId keyframe_near(double timestamp) const {
+    const auto after = keyframes_.lower_bound(timestamp);
+    if (after == keyframes_.begin()) return after->second;
+    const auto before = std::prev(after);
+    return after != keyframes_.end() && after->first - timestamp < timestamp - before->first ? after->second
+                                                                                             : before->second;
+  }
+
+  bool drifts(std::size_t i) const { return roles_[i] == Role::drifting || roles_[i] == Role::missing; }
+  /// Whether a frame without a pose can have one by a tracked frame at this time alone.
+  bool is_predictable(std::size_t i, double tracked) const {
+    return roles_[i] == Role::missing && std::abs(trajectory_[i].timestamp - tracked) <= longest_prediction;
+  }
   /// In the unit of the map.
   Deviations first_deviations_of_map() const { return {first_deviations[0] / unit_, first_deviations[1]}; }
 
@@ -132,10 +179,15 @@ class InertialSmoother {
     for (std::size_t from = 0, to = 0; from < links.size(); from = to) {
       for (to = from + 1; to < links.size() && links[to].first == links[to - 1].second;) ++to;
       Chain chain{begin + links[from].first, begin + links[to - 1].second + 1, 0, 0, {}};
+      const std::size_t lowest = chain.begin, highest = chain.end;
       while (chain.begin < chain.end && drifts(chain.begin)) ++chain.begin;
       while (chain.begin < chain.end && drifts(chain.end - 1)) --chain.end;
+      if (chain.end - chain.begin < fewest_frames) continue;
+      const double begins = trajectory_[chain.begin].timestamp, ends = trajectory_[chain.end - 1].timestamp;
+      while (chain.begin > lowest && is_predictable(chain.begin - 1, begins)) --chain.begin;
+      while (chain.end < highest && is_predictable(chain.end, ends)) ++chain.end;
       chain.first = std::max(first, chain.begin), chain.last = std::min(last, chain.end);
-      if (chain.end - chain.begin < fewest_frames || chain.first >= chain.last) continue;
+      if (chain.first >= chain.last) continue;
       for (std::size_t k = from; k < to; ++k) {
         InertialHistory::Link& link = links[k];
         if (begin + link.first < chain.begin || begin + link.second >= chain.end) continue;
@@ -157,12 +209,32 @@ class InertialSmoother {
       const double share = roles_[i] == Role::keyframe ? keyframe_share : 1.0;
       problem.factors.pose_priors.push_back({pose, T_camera_world, information_of(share * first_deviations_of_map())});
     }
+    turn_missing(chain, problem);
     add_inertial_factors(problem, chain.links, inertia_);
     for (BundleFactors::MotionPrior& prior : problem.factors.motion_priors)
       prior.information *= model_factor * model_factor;
     problem.robust_iterations = 0, problem.final_iterations = 50;  // no observation is an outlier
     problem.function_tolerance = 1e-6;
     return problem;
+  }
+
+  /// Turns frames without a pose as the gyroscope says: a solution begins there, and half a turn could end elsewhere.
+  void turn_missing(const Chain& chain, BundleProblem& problem) const {
+    const MapInertia estimates = inertia_.estimates().value_or(MapInertia());
+    const Eigen::Matrix3d R_body_camera = estimates.mounting.transpose() * estimates.T_body_camera.linear();
+    const auto turn = [&](std::size_t from, std::size_t to, const Eigen::Matrix3d& R_from_to) {
+      if (roles_[chain.begin + to] != Role::missing) return;
+      const Eigen::Isometry3d T_world_camera = problem.poses[to].T_camera_world.inverse();
+      const Eigen::Matrix3d R_camera_world = R_body_camera.transpose() * R_from_to.transpose() * R_body_camera *
+                                             problem.poses[from].T_camera_world.linear();
+      problem.poses[to].T_camera_world.linear() = R_camera_world;
+      problem.poses[to].T_camera_world.translation() = -R_camera_world * T_world_camera.translation();
+    };
+    const auto has_pose = [](Role role) { return role != Role::missing; };
+    const auto first = std::find_if(roles_.begin() + static_cast<std::ptrdiff_t>(chain.begin), roles_.end(), has_pose);
+    const auto leading = static_cast<std::size_t>(first - roles_.begin()) - chain.begin;
+    for (std::size_t k = leading; k < chain.links.size(); ++k) turn(k, k + 1, chain.links[k].measured.delta().rotation);
+    for (std::size_t k = leading; k-- > 0;) turn(k + 1, k, chain.links[k].measured.delta().rotation.transpose());
   }
 
   /// Deviations of tracked frames: the root mean square, within seven frames to each side, of what the solution changed
@@ -203,8 +275,8 @@ class InertialSmoother {
     Value sum = Value::Zero();
     double count = 0.0;
     for (std::size_t k = pose < reach ? 0 : pose - reach; k < std::min(values.size(), pose + reach + 1); ++k) {
-      const Role role = roles_[chain.begin + k];
-      if (role == Role::tracked || (drifting_count && role == Role::drifting)) sum += values[k], count += 1.0;
+      if (roles_[chain.begin + k] == Role::tracked || (drifting_count && drifts(chain.begin + k)))
+        sum += values[k], count += 1.0;
     }
     return sum / count;
   }
@@ -235,11 +307,11 @@ class InertialSmoother {
 
   Map& map_;
   const InertialHistory& inertia_;
-  const Trajectory trajectory_;             // before
-  Trajectory smoothed_;                     // as far as chains were solved
-  std::vector<Role> roles_;                 // by frame of the trajectory
-  std::map<double, KeyFrameId> keyframes_;  // by time stamp
-  double unit_ = 1.0;                       // of the map [m]
+  const Trajectory trajectory_;                             // before
+  std::vector<std::optional<Eigen::Isometry3d>> smoothed_;  // T_camera_world, as far as chains were solved
+  std::vector<Role> roles_;                                 // by frame of the trajectory
+  std::map<double, KeyFrameId> keyframes_;                  // by time stamp
+  double unit_ = 1.0;                                       // of the map [m]
 };
 
 }  // namespace
@@ -269,18 +341,17 @@ void follow_keyframes(FrameHistory& history, const Map& map, const Trajectory& b
   }
 }
 
-std::size_t smooth_by_inertia(FrameHistory& history, Map& map, const DriftingPoses& drifting,
-                              const InertialHistory& inertia, Optimizer& optimizer, const std::atomic<bool>& stop) {
-  if (map.keyframes().size() == 0 || history.main_submap(map) != inertia.submap()) return 0;
+InertialSmoothing smooth_by_inertia(FrameHistory& history, Map& map, const DriftingPoses& drifting,
+                                    const InertialHistory& inertia, Optimizer& optimizer,
+                                    const std::atomic<bool>& stop) {
+  if (map.keyframes().size() == 0 || history.main_submap(map) != inertia.submap()) return {};
   InertialSmoother smoother(history, map, drifting, inertia);
-  std::size_t count = 0;
   for (const Chain& chain : smoother.find_chains()) {
     const std::optional<BundleProblem> solution = smoother.solve(chain, optimizer, stop);
     if (stop) break;
-    if (solution) count += smoother.take(chain, *solution);
+    if (solution) smoother.take(chain, *solution);
   }
-  if (count > 0) smoother.write(history);
-  return count;
+  return smoother.write(history);
 }
 
 }  // namespace holdfast

@@ -71,6 +71,19 @@ TEST_F(InertialHistoryTest, DoesNotLinkOverGapsAndSaturation) {
   EXPECT_EQ(found[1].first, 2U);
 }
 
+/// Sources give one sample before the first frame, which a time offset makes too late.
+TEST_F(InertialHistoryTest, LinksTheFirstFrameAcrossAMissingSample) {
+  add(0.0, 1.0);
+  MapInertia earlier = estimates();
+  earlier.time_offset = -0.012;
+  history.set_estimates(earlier, 0);
+  ASSERT_EQ(links({0.0, 0.5}).size(), 1U);
+  EXPECT_NEAR(links({0.0, 0.5})[0].measured.duration(), 0.5, 1e-9);
+  earlier.time_offset = -0.02;
+  history.set_estimates(earlier, 0);
+  EXPECT_TRUE(links({0.0, 0.5}).empty());
+}
+
 TEST_F(InertialHistoryTest, KeepsTheLastEstimatesOfASubmap) {
   add(0.0, 3.0);
   history.set_estimates(std::nullopt, 0);

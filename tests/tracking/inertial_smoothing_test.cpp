@@ -19,9 +19,9 @@ namespace {
 constexpr double frame_interval = 0.04;
 constexpr int frame_count = 100, first_bridged = 40, last_bridged = 70;
 
-/// A camera that swings along x without turning; its IMU has the camera's frame.
-Eigen::Isometry3d pose_at(double time) {
-  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+/// A camera that swings along x and turns about the vertical by `turn` [rad/s]; its IMU has the camera's frame.
+Eigen::Isometry3d pose_at(double time, double turn = 0.0) {
+  Eigen::Isometry3d T_world_camera(Eigen::AngleAxisd(turn * time, Eigen::Vector3d::UnitY()));
   T_world_camera.translation().x() = 0.3 * std::sin(2.0 * time);
   return T_world_camera;
 }
@@ -39,19 +39,22 @@ class InertialSmoothingTest : public testing::Test {
     result.gravity = {0.0, standard_gravity, 0.0};
     return result;
   }
-  void add_frame(int i, bool lacks_measurements = false, bool drifts = false) {
+  void add_measurements(int i) {
     SensorFrame measured;
     measured.timestamp = frame_interval * i;
     for (int k = -9; k <= 1; ++k) {
       const double time = measured.timestamp + 0.005 * k;
       const double wrong = unmodelled * std::sin(std::numbers::pi / 2.0 * time);
-      measured.imu.push_back({time, Eigen::Vector3d::Zero(), force_at(time) + wrong * Eigen::Vector3d::UnitX()});
+      const Eigen::Vector3d force = force_at(time) + wrong * Eigen::Vector3d::UnitX();
+      measured.imu.push_back({time, turn * Eigen::Vector3d::UnitY(), pose_at(time, turn).linear().transpose() * force});
     }
-    if (lacks_measurements) measured.imu.clear();
     inertia->add(measured);
+  }
+  void add_frame(int i, bool lacks_measurements = false, bool drifts = false) {
+    if (!lacks_measurements) add_measurements(i);
     Frame frame;
-    frame.timestamp = measured.timestamp;
-    Eigen::Isometry3d T_world_camera = pose_at(frame.timestamp);
+    frame.timestamp = frame_interval * i;
+    Eigen::Isometry3d T_world_camera = pose_at(frame.timestamp, turn);
     const bool is_bridged = drifts || (i >= first_bridged && i <= last_bridged);
     const int since = drifts ? 20 : i - first_bridged;
     if (is_bridged) T_world_camera.translation().y() += 0.15 * since / (last_bridged - first_bridged);
@@ -73,7 +76,7 @@ class InertialSmoothingTest : public testing::Test {
     drifting.keyframes.push_back(frame.timestamp);
     return id;
   }
-  std::size_t smooth() { return smooth_by_inertia(history, map, drifting, *inertia, *optimizer, stop); }
+  std::size_t smooth() { return smooth_by_inertia(history, map, drifting, *inertia, *optimizer, stop).smoothed; }
   static Frame keyframe() {
     Frame frame;
     frame.x.resize(2), frame.map_points.resize(2);
@@ -87,6 +90,27 @@ class InertialSmoothingTest : public testing::Test {
     return largest;
   }
 
+  /// A history of `count` frames in which those for which `is_missing` is true have measurements and no pose.
+  template <class IsMissing>
+  void add_frames_but(int count, IsMissing is_missing) {
+    history.clear(), drifting = {};
+    inertia.emplace(*find_imu("bmi055"));
+    inertia->set_estimates(estimates(), 0);
+    drifting.longest_gap = 4.0;
+    for (int i = 0; i < count; ++i) {
+      if (is_missing(i)) {
+        add_measurements(i);
+        drifting.missing.push_back(frame_interval * i);
+      } else {
+        add_frame(i);
+      }
+    }
+    drifting.frames.clear();
+    for (const TimedPose& pose : history.trajectory(map))
+      history.replace(pose.timestamp, pose_at(pose.timestamp, turn).inverse(), map);
+  }
+
+  double turn = 0.0;        // [rad/s]
   double unmodelled = 0.0;  // acceleration that measurements show and the camera has not [m/s^2]
   Map map;
   KeyFrameId reference = map.add_keyframe(keyframe());
@@ -129,6 +153,39 @@ TEST(FollowKeyframes, FramesLieBetweenTheirKeyframesAsBefore) {
 TEST_F(InertialSmoothingTest, FramesOfABridgeFollowTheFramesOnBothSides) {
   EXPECT_NEAR(largest_error(), 0.15, 1e-6);
   EXPECT_EQ(smooth(), 99U) << "all but the keyframe";
+  EXPECT_LT(largest_error(), 0.005);
+}
+
+TEST_F(InertialSmoothingTest, FramesWithoutAPoseGetOneBetweenTrackedFrames) {
+  turn = 5.0;  // more than one and a half turns within the gap
+  add_frames_but(frame_count, [](int i) { return i >= 30 && i < 80; });
+  const InertialSmoothing done = smooth_by_inertia(history, map, drifting, *inertia, *optimizer, stop);
+  EXPECT_EQ(done.placed, 50U);
+  EXPECT_EQ(done.smoothed, 99U);
+  const Trajectory poses = history.trajectory(map);
+  ASSERT_EQ(poses.size(), static_cast<std::size_t>(frame_count));
+  EXPECT_LT(largest_error(), 0.005);
+  for (const TimedPose& pose : poses)
+    EXPECT_LT(
+        Eigen::AngleAxisd(pose.T_world_camera.linear().transpose() * pose_at(pose.timestamp, turn).linear()).angle(),
+        0.01);
+}
+
+TEST_F(InertialSmoothingTest, FramesWithoutAPoseGetOneWithinHalfASecondOfTheFirstAndTheLastTrackedFrame) {
+  turn = 3.0;
+  add_frames_but(frame_count, [](int i) { return i < 20 || i >= 70; });
+  EXPECT_EQ(smooth_by_inertia(history, map, drifting, *inertia, *optimizer, stop).placed, 24U);
+  const Trajectory poses = history.trajectory(map);
+  ASSERT_EQ(poses.size(), 74U);
+  EXPECT_NEAR(poses.front().timestamp, 8 * frame_interval, 1e-9);
+  EXPECT_NEAR(poses.back().timestamp, 81 * frame_interval, 1e-9);
+  EXPECT_LT(largest_error(), 0.005);
+}
+
+TEST_F(InertialSmoothingTest, FramesWithoutAPoseStaySoInALongGap) {
+  add_frames_but(frame_count, [](int i) { return i >= 30 && i < 80; });
+  drifting.longest_gap = 1.9;
+  EXPECT_EQ(smooth_by_inertia(history, map, drifting, *inertia, *optimizer, stop).placed, 24U) << "beside its ends";
   EXPECT_LT(largest_error(), 0.005);
 }
 
@@ -219,7 +276,7 @@ TEST_F(InertialSmoothingTest, AKeyframeThatAnAdjustmentPlacedHoldsTheBridge) {
 
 TEST_F(InertialSmoothingTest, StaysWithoutMeasurements) {
   const InertialHistory nothing(*find_imu("bmi055"));
-  EXPECT_EQ(smooth_by_inertia(history, map, drifting, nothing, *optimizer, stop), 0U);
+  EXPECT_EQ(smooth_by_inertia(history, map, drifting, nothing, *optimizer, stop).smoothed, 0U);
   EXPECT_NEAR(largest_error(), 0.15, 1e-6);
 }
 

@@ -15,6 +15,14 @@ namespace holdfast {
 struct DriftingPoses {
   std::vector<double> frames;     ///< no keyframes
   std::vector<double> keyframes;  ///< which no adjustment of the map has placed since
+  std::vector<double> missing;    ///< frames without a pose
+  double longest_gap = 0.0;       ///< time between tracked frames in which missing ones get a pose [s]
+};
+
+/// What smoothing did.
+struct InertialSmoothing {
+  std::size_t smoothed = 0;  ///< frames whose pose is a new one
+  std::size_t placed = 0;    ///< frames that had no pose
 };
 
 /// Moves the frames between keyframes as an adjustment of the map has moved the keyframes before and after them:
@@ -30,9 +38,11 @@ void follow_keyframes(FrameHistory& history, const Map& map, const Trajectory& b
 /// their median, and stay where they are. Frames that drift have none: what the map corrected behind a bridge is
 /// thereby spread over it by the uncertainty of the measurements. These weigh a ninth of what their noise says, for
 /// errors of the IMU's model. Drifting keyframes move with the points that no other keyframe observes. Where a link is
-/// missing, the chain of frames ends; a bridge at the end of a chain stays as it is. Returns the number of frames with
-/// a new pose. `stop`: from any thread; chains that were not solved yet stay.
-std::size_t smooth_by_inertia(FrameHistory& history, Map& map, const DriftingPoses& drifting,
-                              const InertialHistory& inertia, Optimizer& optimizer, const std::atomic<bool>& stop);
+/// missing, the chain of frames ends; a bridge at the end of a chain stays as it is. Frames without a pose get one like
+/// those that drift, between tracked frames that are at most `longest_gap` apart, and where a chain begins or ends
+/// within half a second of a tracked one. `stop`: from any thread; chains that were not solved yet stay.
+InertialSmoothing smooth_by_inertia(FrameHistory& history, Map& map, const DriftingPoses& drifting,
+                                    const InertialHistory& inertia, Optimizer& optimizer,
+                                    const std::atomic<bool>& stop);
 
 }  // namespace holdfast

@@ -73,9 +73,10 @@ class Tracker {
     holdfast::follow_keyframes(context_.history, map.map(), before);
   }
   /// Estimates the poses between keyframes again by the map as it is now, at the end of a run.
-  std::size_t smooth_by_inertia(const MapAccess& map, const DriftingPoses& drifting, const InertialHistory& inertia,
-                                Optimizer& optimizer, const std::atomic<bool>& stop) {
-    return holdfast::smooth_by_inertia(context_.history, map.map(), drifting, inertia, optimizer, stop);
+  void smooth_by_inertia(const MapAccess& map, const DriftingPoses& drifting, const InertialHistory& inertia,
+                         Optimizer& optimizer, const std::atomic<bool>& stop) {
+    placed_by_inertia_ +=
+        holdfast::smooth_by_inertia(context_.history, map.map(), drifting, inertia, optimizer, stop).placed;
   }
 
   /// Smooths the trajectory at the end of a run, if the settings say so (trajectory_smoothing.hpp).
@@ -89,7 +90,11 @@ class Tracker {
   const Frame& frame() const { return context_.current; }
   TrackerState state() const { return state_; }
   /// Statistics of the frames around losses so far.
-  LossRecord loss_record(const MapAccess&) const { return recovery_.record(); }
+  LossRecord loss_record(const MapAccess&) const {
+    LossRecord record = recovery_.record();
+    record.placed_by_inertia = placed_by_inertia_;
+    return record;
+  }
   /// The rolling-shutter correction with its estimated readout time.
   const RollingShutter& rolling_shutter() const { return context_.shutter; }
   /// The submap with most of the tracked frames.
@@ -124,6 +129,7 @@ class Tracker {
   HealthJudge health_;
   PoseCovariance covariance_;
   TrackerState state_;
+  std::size_t placed_by_inertia_ = 0;  // frames
 };
 
 }  // namespace holdfast
