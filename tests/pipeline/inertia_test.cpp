@@ -33,20 +33,23 @@ PipelineBuilder builder(const Camera& camera, Sensor sensor, int features, bool 
   return result;
 }
 
-/// A camera among objects that rest. Its lens is covered for 0.8 s.
+/// A camera among objects that rest. Its lens is covered for the first 0.2 s, and later for 0.8 s.
 class InertiaTest : public ::testing::Test {
  protected:
   struct Run {
     Trajectory trajectory, keyframes;
     std::optional<MapInertia> inertia;
+    std::size_t placed_by_inertia;
   };
 
   InertiaTest() {
     simulation::ImuSensor sensor(simulator_.path(), imu_, 1);
+    const double begin = simulator_.frame(0).timestamp;
     for (std::uint64_t i = 0; i < simulator_.frame_count(); ++i) {
       SensorFrame frame = simulator_.frame(i);
       frame.imu = sensor.take(frame.timestamp);
-      if (frame.timestamp > 3.5 && frame.timestamp < 4.3) frame.colour.setTo(0), frame.depth.setTo(0);
+      const double time = frame.timestamp;
+      if (time < begin + 0.2 || (time > 3.5 && time < 4.3)) frame.colour.setTo(0), frame.depth.setTo(0);
       truth_.push_back({frame.timestamp, *frame.truth->T_world_camera});
       frame.truth.reset();
       frames_.push_back(std::move(frame));
@@ -58,7 +61,8 @@ class InertiaTest : public ::testing::Test {
     Pipeline pipeline = builder(simulator_.camera(), Sensor::rgbd, 500).mapping(mapping).build();
     for (const SensorFrame& frame : frames_) pipeline.feed(frame);
     pipeline.finish();
-    return {pipeline.trajectory(), pipeline.keyframe_trajectory(), pipeline.map().inertia()};
+    return {pipeline.trajectory(), pipeline.keyframe_trajectory(), pipeline.map().inertia(),
+            pipeline.loss_record().placed_by_inertia};
   }
   Statistics error(const Trajectory& trajectory) const { return evaluate(truth_, trajectory, {}).absolute_error; }
 
@@ -79,6 +83,8 @@ bool is_same(const Trajectory& a, const Trajectory& b) {
 TEST_F(InertiaTest, AMapWithMotionsIsMoreAccurateAndTheSameInEachRun) {
   const Run linked = run(true), repeated = run(true), visual = run(false);
   ASSERT_EQ(linked.trajectory.size(), frames_.size()) << "one trajectory";
+  EXPECT_EQ(linked.placed_by_inertia, 4U) << "before there was a map";
+  EXPECT_EQ(visual.placed_by_inertia, 0U);
   EXPECT_TRUE(is_same(linked.trajectory, repeated.trajectory));
   EXPECT_TRUE(is_same(linked.keyframes, repeated.keyframes));
   EXPECT_LT(error(linked.trajectory).rmse, 0.0025);
