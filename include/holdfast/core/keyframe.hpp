@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "holdfast/core/frame.hpp"
@@ -29,6 +31,9 @@ struct KeyFrame {
   /// of poses stored relative to this keyframe. It is not saved in map files.
   double scale = 1.0;
   std::vector<KeyFrameId> loop_edges;  ///< other ends of closed loops; a keyframe with one is never culled
+  /// Direction of gravity in the frame of the camera, a unit vector, as tracking knew it by inertial measurements when
+  /// the keyframe was made.
+  std::optional<Eigen::Vector3d> vertical;
 };
 
 }  // namespace holdfast
