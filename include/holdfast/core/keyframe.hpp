@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "holdfast/core/frame.hpp"
 #include "holdfast/core/id.hpp"
+#include "holdfast/core/map_inertia.hpp"
 
 namespace holdfast {
 
@@ -34,6 +34,7 @@ struct KeyFrame {
   /// Direction of gravity in the frame of the camera, a unit vector, as tracking knew it by inertial measurements when
   /// the keyframe was made.
   std::optional<Eigen::Vector3d> vertical;
+  std::optional<KeyFrameMotion> motion;  ///< only if an adjustment with inertial measurements placed the keyframe
 };
 
 }  // namespace holdfast
