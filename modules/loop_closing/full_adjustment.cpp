@@ -327,6 +327,7 @@ void FullAdjustment::move_map() {
     if (keyframe->frame.T_camera_world.matrix() == poses[i].matrix())
       placed_keyframes_.push_back(keyframe->frame.timestamp);
   }
+  keep_motions(poses);
   std::vector<std::uint8_t> is_placed(map_.points().slot_count(), 0);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     MapPoint* point = map_.find_point(points_[i]);
@@ -341,6 +342,15 @@ void FullAdjustment::move_map() {
     ++summary_.points_carried;
   }
   map_.invalidate_copies();
+}
+
+/// Of the keyframes that have the poses of the solution.
+void FullAdjustment::keep_motions(std::span<const Eigen::Isometry3d> poses) {
+  for (const BundleFactors::Motion& motion : problem_.factors.motions) {
+    KeyFrame* keyframe = map_.find_keyframe(keyframes_[motion.pose]);
+    if (keyframe != nullptr && keyframe->frame.T_camera_world.matrix() == poses[motion.pose].matrix())
+      keyframe->motion = KeyFrameMotion{motion.velocity, motion.bias};
+  }
 }
 
 void FullAdjustment::remove_outliers() {

@@ -99,6 +99,9 @@ void LoopClosingSettings::describe(ParameterTable<LoopClosingSettings>& table) {
            "minimum number of shared points of a covisibility edge in the essential graph")
       .range(15, 10000);
   table.add("graph_iterations", &S::graph_iterations, "maximum iterations of the pose graph").range(1, 1000);
+  table.add("keep_vertical", &S::keep_vertical,
+            "with inertial measurements, keyframes get the roll and pitch that these say, and the pose graph has four "
+            "degrees of freedom");
   table.add("full_adjustment", &S::full_adjustment, "run full bundle adjustment after a loop closure");
   table
       .add("full_robust_iterations", &S::full_robust_iterations,

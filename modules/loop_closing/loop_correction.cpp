@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "holdfast/geometry/upright_motion.hpp"
 #include "holdfast/matching/point_fusion.hpp"
 #include "map_motion.hpp"
 #include "piece_set.hpp"
@@ -30,6 +31,7 @@ bool LoopCorrection::run(const std::lock_guard<std::mutex>&) {
     add_loop_edges();
     fix_submaps();
     bring_pieces_together();
+    make_upright();
   }
   const GraphSummary summary =
       loop_.scale_is_free ? optimizer_.optimize_similarity_graph(graph_) : optimizer_.optimize_pose_graph(graph_);
@@ -120,6 +122,47 @@ void LoopCorrection::bring_pieces_together() {
   for (std::size_t i = 0; i < nodes_.size(); ++i)
     if (map_.keyframe(nodes_[i]).submap == moving)
       graph_.nodes[i].T_camera_world = graph_.nodes[i].T_camera_world * T_old_new;
+}
+
+void LoopCorrection::make_upright() {
+  if (!settings_.keep_vertical || !optimizer_.keeps_vertical()) return;
+  const std::uint32_t older = std::min(keyframe_submap_, place_submap_);
+  for (std::size_t i = 0; i < nodes_.size() && !graph_.vertical; ++i) {
+    const KeyFrame& keyframe = map_.keyframe(nodes_[i]);
+    if (keyframe.submap == older && keyframe.vertical)
+      graph_.vertical = graph_.nodes[i].T_camera_world.linear().transpose() * *keyframe.vertical;
+  }
+  if (!graph_.vertical) return;
+  turn_upright(older);
+  if (keyframe_submap_ != place_submap_) turn_upright(std::max(keyframe_submap_, place_submap_));
+}
+
+/// Keyframes without a vertical of their own turn as the one before them, or as the first that has one.
+void LoopCorrection::turn_upright(std::uint32_t submap) {
+  std::optional<Eigen::Matrix3d> turn;  // new world from old
+  std::vector<std::size_t> waiting;
+  const auto apply = [&](std::size_t i) {
+    if (graph_.nodes[i].fixed) return;
+    Eigen::Isometry3d& pose = graph_.nodes[i].T_camera_world;
+    const Eigen::Vector3d centre = -pose.linear().transpose() * pose.translation();
+    pose.linear() = pose.linear() * turn->transpose();
+    pose.translation() = -pose.linear() * centre;
+  };
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const KeyFrame& keyframe = map_.keyframe(nodes_[i]);
+    if (keyframe.submap != submap) continue;
+    const Eigen::Matrix3d& R_camera_world = graph_.nodes[i].T_camera_world.linear();
+    if (keyframe.vertical)
+      turn = Eigen::Quaterniond::FromTwoVectors(R_camera_world.transpose() * *keyframe.vertical, *graph_.vertical)
+                 .toRotationMatrix();
+    if (!turn) {
+      waiting.push_back(i);
+      continue;
+    }
+    for (const std::size_t earlier : waiting) apply(earlier);
+    waiting.clear();
+    apply(i);
+  }
 }
 
 void LoopCorrection::move_map() {

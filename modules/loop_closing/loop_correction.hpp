@@ -44,6 +44,10 @@ class LoopCorrection {
   void fix_submaps();
   /// If the loop joins two submaps, transforms the younger one rigidly as initial value of the solver.
   void bring_pieces_together();
+  /// With inertial measurements, four degrees of freedom for the solver: keyframes get the roll and pitch that these
+  /// say, in the world of the older submap.
+  void make_upright();
+  void turn_upright(std::uint32_t submap);
   void move_map();
   void fuse_matches();
   void fuse_into(KeyFrameId target);

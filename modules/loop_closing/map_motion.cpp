@@ -52,6 +52,9 @@ int MapMotion::move_keyframes(Map& map) const {
   int carried = 0;
   for (const Pose& pose : poses_) {
     KeyFrame& keyframe = map.keyframe(pose.keyframe);
+    if (keyframe.motion)
+      keyframe.motion->velocity = pose.T_camera_world.linear().transpose() *
+                                  (keyframe.frame.T_camera_world.linear() * keyframe.motion->velocity);
     keyframe.frame.T_camera_world = pose.T_camera_world;
     keyframe.scale *= pose.scale;
     carried += pose.carried ? 1 : 0;

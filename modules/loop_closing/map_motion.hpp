@@ -22,7 +22,8 @@ class MapMotion {
   MapMotion(const Map& map, std::span<const KeyFrameId> keyframes, std::span<const Eigen::Isometry3d> poses,
             std::span<const double> scales = {}, std::span<const std::uint8_t> is_weak = {});
 
-  /// Sets the poses of all keyframes; returns the number of those that followed their parents.
+  /// Sets the poses of all keyframes, and turns their velocities; returns the number of those that followed their
+  /// parents.
   int move_keyframes(Map& map) const;
   /// Moves a point and its viewing direction with its reference keyframe.
   void move_point(MapPoint& point) const;

@@ -76,6 +76,10 @@ class ContentReader {
     } else if (type == inertia_section) {
       expect(has_points_ && !content_.map.inertia);
       content_.map.inertia = read_inertia(container_.payload());
+    } else if (type == motion_section) {
+      expect(has_points_ && !has_motions_);
+      read_motions(container_.payload(), content_.map.keyframes);
+      has_motions_ = true;
     } else if (container_.required()) {
       container_.fail("found a section '" + type +
                       "' that this Holdfast does not know and cannot leave out: use a newer Holdfast");
@@ -88,8 +92,8 @@ class ContentReader {
            lens_section + "' if there are such lenses, '" + descriptor_section + "' if there are such descriptors, '" +
            keyframe_section + "', one '" + feature_section + "' for each keyframe, '" + point_section + "', '" +
            place_section + "' if images were described, '" + class_section + "' if points have classes, '" +
-           vote_section + "' if they have votes, '" + inertia_section +
-           "' if estimates of an IMU are kept, in this order");
+           vote_section + "' if they have votes, '" + inertia_section + "' if estimates of an IMU are kept, '" +
+           motion_section + "' if keyframes have a vertical or a motion, in this order");
   }
 
   void check_header() {
@@ -112,7 +116,7 @@ class ContentReader {
   std::vector<std::uint32_t> feature_counts_;
   std::uint32_t features_read_ = 0;
   bool has_tables_ = false, has_lenses_ = false, has_descriptors_ = false, has_keyframes_ = false, has_points_ = false,
-       has_places_ = false, has_classes_ = false, has_votes_ = false;
+       has_places_ = false, has_classes_ = false, has_votes_ = false, has_motions_ = false;
 };
 
 }  // namespace

@@ -31,6 +31,10 @@ void append_keyframe(const KeyFrame& keyframe, std::size_t position, const Dense
     json << index.of(keyframe.parent);
   else
     json << "null";
+  if (keyframe.vertical) json << R"(,"vertical":)" << *keyframe.vertical;
+  if (keyframe.motion)
+    json << R"(,"velocity":)" << keyframe.motion->velocity << R"(,"gyroscope_bias":)" << keyframe.motion->bias.gyroscope
+         << R"(,"accelerometer_bias":)" << keyframe.motion->bias.accelerometer;
   json << "}";
 }
 

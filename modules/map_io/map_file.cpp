@@ -34,7 +34,7 @@ void write_content(AtomicFile& file, const Map& map, const DenseIndex& index, bo
   const SharedTables shared = tables_of(map, index);
   const MapFeatures& map_features = map.features();
   const bool has_descriptor_section = map_features != MapFeatures();
-  ByteWriter tables, lenses, descriptors, keyframes, points, places, classes, votes, inertia;
+  ByteWriter tables, lenses, descriptors, keyframes, points, places, classes, votes, inertia, motions;
   if (has_descriptor_section) write_map_features(map_features, descriptors);
   write_tables(shared, tables);
   write_lenses(shared, lenses);
@@ -44,6 +44,7 @@ void write_content(AtomicFile& file, const Map& map, const DenseIndex& index, bo
   write_classes(map, index, classes);
   write_votes(map, index, votes);
   if (has_first_submap) write_inertia(map, inertia);  // its gravity is in that world
+  write_motions(map, index, motions);
 
   FileHeader header;
   header.library_version = HOLDFAST_VERSION;
@@ -52,8 +53,10 @@ void write_content(AtomicFile& file, const Map& map, const DenseIndex& index, bo
   const bool has_classes = classes.size() > 0;
   const bool has_votes = votes.size() > 0;
   const bool has_inertia = inertia.size() > 0;
+  const bool has_motions = motions.size() > 0;
   std::uint32_t optional_sections = 0;
-  for (const bool is_written : {has_lenses, has_descriptor_section, has_places, has_classes, has_votes, has_inertia})
+  for (const bool is_written :
+       {has_lenses, has_descriptor_section, has_places, has_classes, has_votes, has_inertia, has_motions})
     optional_sections += is_written ? 1U : 0U;
   header.sections = 3 + optional_sections + static_cast<std::uint32_t>(index.keyframes().size());
   header.keyframes = static_cast<std::uint32_t>(index.keyframes().size());
@@ -63,7 +66,7 @@ void write_content(AtomicFile& file, const Map& map, const DenseIndex& index, bo
   header.sensor = static_cast<std::uint32_t>(map.sensor());
   header.file_size = header_size + header.sections * section_header_size + tables.size() + lenses.size() +
                      descriptors.size() + keyframes.size() + points.size() + places.size() + classes.size() +
-                     votes.size() + inertia.size();
+                     votes.size() + inertia.size() + motions.size();
   for (const KeyFrameId id : index.keyframes())
     header.file_size += features_size(map.keyframe(id).frame.size(), map_features.descriptors);
 
@@ -83,6 +86,7 @@ void write_content(AtomicFile& file, const Map& map, const DenseIndex& index, bo
   if (has_classes) write_section(file, class_section, classes.bytes(), 0);
   if (has_votes) write_section(file, vote_section, votes.bytes(), 0);
   if (has_inertia) write_section(file, inertia_section, inertia.bytes(), 0);
+  if (has_motions) write_section(file, motion_section, motions.bytes(), 0);
 }
 
 }  // namespace

@@ -61,6 +61,7 @@ void add_keyframes(const std::vector<KeyFrame>& keyframes, MapInfo& info) {
   for (const KeyFrame& keyframe : keyframes) {
     info.covisibility_edges += keyframe.covisible.size();
     info.loops += keyframe.loop_edges.size();
+    info.motions += keyframe.motion ? 1 : 0;
     const double stamp = keyframe.frame.timestamp;
     const bool first = &keyframe == &keyframes.front();
     info.first_timestamp = first ? stamp : std::min(info.first_timestamp, stamp);
@@ -116,6 +117,7 @@ std::string to_text(const MapInfo& info) {
   rows.emplace_back("points", std::to_string(info.points) + ", " + std::to_string(info.observations) + " observations");
   if (!info.classes.empty()) rows.emplace_back("classes", classes_text(info));
   if (info.inertia) rows.emplace_back("inertia", inertia_text(*info.inertia));
+  if (info.motions > 0) rows.emplace_back("velocities", "of " + std::to_string(info.motions) + " keyframes");
   rows.emplace_back("loops", std::to_string(info.loops));
   if (info.keyframes > 0)
     rows.emplace_back("time", fixed(info.last_timestamp - info.first_timestamp, 2) + " s, from " +
@@ -148,11 +150,11 @@ std::string to_json(const MapInfo& info) {
   for (std::size_t k = 0; k < info.classes.size(); ++k)
     (json << (k == 0 ? "" : ", ")).quote(info.classes[k].first) << ": " << info.classes[k].second;
   json << "}"
-       << ",\n  \"inertia\": " << info.inertia << ",\n  \"covisibility_edges\": " << info.covisibility_edges
-       << ",\n  \"loops\": " << info.loops << ",\n  \"next_sequence\": " << info.next_sequence
-       << ",\n  \"first_timestamp\": " << info.first_timestamp << ",\n  \"last_timestamp\": " << info.last_timestamp
-       << ",\n  \"minimum_point\": " << info.minimum_point << ",\n  \"maximum_point\": " << info.maximum_point
-       << "\n}\n";
+       << ",\n  \"inertia\": " << info.inertia << ",\n  \"motions\": " << info.motions
+       << ",\n  \"covisibility_edges\": " << info.covisibility_edges << ",\n  \"loops\": " << info.loops
+       << ",\n  \"next_sequence\": " << info.next_sequence << ",\n  \"first_timestamp\": " << info.first_timestamp
+       << ",\n  \"last_timestamp\": " << info.last_timestamp << ",\n  \"minimum_point\": " << info.minimum_point
+       << ",\n  \"maximum_point\": " << info.maximum_point << "\n}\n";
   return std::move(json.text());
 }
 

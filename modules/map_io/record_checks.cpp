@@ -142,6 +142,17 @@ std::string trouble_of(const MapPoint& point) {
   return "";
 }
 
+std::string trouble_of_motion(const KeyFrame& keyframe) {
+  if (keyframe.vertical && !within(keyframe.vertical->norm(), 0.999, 1.001))
+    return wrong("length of the vertical", keyframe.vertical->norm(), "1");
+  if (!keyframe.motion) return "";
+  if (!within(keyframe.motion->velocity.norm(), 0, 1e4))
+    return wrong("speed", keyframe.motion->velocity.norm(), "0 to 1e4 m/s");
+  for (const Eigen::Vector3d& bias : {keyframe.motion->bias.gyroscope, keyframe.motion->bias.accelerometer})
+    if (!within(bias.norm(), 0, 100)) return wrong("bias", bias.norm(), "0 to 100");
+  return "";
+}
+
 std::string trouble_of(const MapInertia& inertia) {
   if (!within(inertia.gravity.norm(), 1.0, 100.0))
     return wrong("magnitude of gravity", inertia.gravity.norm(), "1 to 100 m/s^2");

@@ -598,4 +598,60 @@ MapInertia read_inertia(ByteReader reader) {
   return inertia;
 }
 
+namespace {
+
+constexpr std::uint32_t has_vertical = 1, has_motion = 2;  // flags of an entry
+
+/// The vectors of an entry with these flags, in their order.
+template <class Entry>
+void for_each_vector(Entry& keyframe, auto&& vector) {
+  if (keyframe.vertical) vector(*keyframe.vertical);
+  if (!keyframe.motion) return;
+  vector(keyframe.motion->velocity);
+  vector(keyframe.motion->bias.gyroscope);
+  vector(keyframe.motion->bias.accelerometer);
+}
+
+}  // namespace
+
+void write_motions(const Map& map, const DenseIndex& index, ByteWriter& writer) {
+  ByteWriter entries;
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < index.keyframes().size(); ++i) {
+    const KeyFrame& keyframe = map.keyframe(index.keyframes()[i]);
+    if (!keyframe.vertical && !keyframe.motion) continue;
+    const std::string trouble = trouble_of_motion(keyframe);
+    HOLDFAST_CHECK(trouble.empty(), "keyframe " << i << ": " << trouble);
+    ++count;
+    entries.put(i);
+    entries.put((keyframe.vertical ? has_vertical : 0U) | (keyframe.motion ? has_motion : 0U));
+    for_each_vector(keyframe, [&](const Eigen::Vector3d& v) {
+      for (int k = 0; k < 3; ++k) entries.put(v[k]);
+    });
+  }
+  if (count == 0) return;
+  writer.put(count);
+  writer.put_bytes(entries.bytes());
+}
+
+void read_motions(ByteReader reader, std::vector<KeyFrame>& keyframes) {
+  const std::uint32_t count = reader.get_count(2 * 4 + 3 * 8, "keyframes with a vertical or a motion");
+  std::uint32_t next = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t position = reader.get<std::uint32_t>(), flags = reader.get<std::uint32_t>();
+    if (position < next || position >= keyframes.size() || flags == 0 || flags > (has_vertical | has_motion))
+      reader.fail("found keyframe " + std::to_string(position) + " with flags " + std::to_string(flags) +
+                  "; expected increasing keyframes below " + std::to_string(keyframes.size()) + " and flags 1 to 3");
+    next = position + 1;
+    KeyFrame& keyframe = keyframes[position];
+    if ((flags & has_vertical) != 0) keyframe.vertical.emplace();
+    if ((flags & has_motion) != 0) keyframe.motion.emplace();
+    for_each_vector(keyframe, [&](Eigen::Vector3d& v) {
+      for (int k = 0; k < 3; ++k) v[k] = reader.get<double>();
+    });
+    refuse(reader, "keyframe", position, trouble_of_motion(keyframe));
+  }
+  reader.expect_end();
+}
+
 }  // namespace holdfast::map_io

@@ -25,6 +25,7 @@ inline constexpr const char* place_section = "PLAC";    ///< only if images of k
 inline constexpr const char* class_section = "CLAS";    ///< only if points have classes; not required
 inline constexpr const char* vote_section = "VOTE";     ///< only if points have votes; not required
 inline constexpr const char* inertia_section = "INER";  ///< only if the map keeps estimates of an IMU; not required
+inline constexpr const char* motion_section = "MOTN";   ///< only if keyframes have a vertical or a motion; not required
 
 /// Cameras and pyramids that keyframes share; keyframes name them by position.
 struct SharedTables {
@@ -59,6 +60,7 @@ std::string trouble_of(const KeyFrame& keyframe);  ///< without its features
 std::string trouble_of_features(const Frame& frame);
 std::string trouble_of(const MapPoint& point);
 std::string trouble_of(const MapInertia& inertia);
+std::string trouble_of_motion(const KeyFrame& keyframe);  ///< of its vertical and its motion
 
 /// Writing throws CheckError, with the entry's trouble, for a map that no reader would take.
 SharedTables tables_of(const Map& map, const DenseIndex& index);
@@ -79,6 +81,8 @@ void write_classes(const Map& map, const DenseIndex& index, ByteWriter& writer);
 void write_votes(const Map& map, const DenseIndex& index, ByteWriter& writer);
 /// Writes nothing if the map keeps none.
 void write_inertia(const Map& map, ByteWriter& writer);
+/// KeyFrame::vertical and KeyFrame::motion of all keyframes that have one; writes nothing if there is none.
+void write_motions(const Map& map, const DenseIndex& index, ByteWriter& writer);
 
 /// Reading throws InputError.
 SharedTables read_tables(ByteReader reader);
@@ -99,5 +103,7 @@ std::vector<std::string> read_classes(ByteReader reader, std::vector<MapPoint>& 
 /// Fills MapPoint::earlier_votes of the points; `classes`: number of classes of the map.
 void read_votes(ByteReader reader, std::size_t classes, std::vector<MapPoint>& points);
 MapInertia read_inertia(ByteReader reader);
+/// Fills KeyFrame::vertical and KeyFrame::motion of the keyframes.
+void read_motions(ByteReader reader, std::vector<KeyFrame>& keyframes);
 
 }  // namespace holdfast::map_io

@@ -288,6 +288,7 @@ KeyFrameId Pipeline::State::insert_keyframe(const LockedMap& locked, const MapRe
   const std::uint32_t submap = request.kind == MapRequest::Kind::new_submap ? locked->new_submap() : request.submap;
   if (inertia) inertia->set_estimates(tracker.inertia_of(locked, submap), submap);
   result.keyframe = flow.insert(locked, tracker.frame(), waits_for_mask, submap, result.times);
+  locked->keyframe(result.keyframe).vertical = tracker.vertical(locked);
   if (is_refined_later()) tracker.keyframe_added(locked, result.keyframe);
   return first_keyframe;
 }

@@ -214,6 +214,12 @@ std::optional<MapInertia> Tracker::inertia_of(const MapAccess& map, std::uint32_
   return found ? found : kept;
 }
 
+std::optional<Eigen::Vector3d> Tracker::vertical(const MapAccess&) const {
+  const std::optional<Eigen::Vector3d> gravity = context_.inertia.gravity();
+  if (!gravity) return std::nullopt;
+  return (context_.current.T_camera_world.linear() * *gravity).normalized();
+}
+
 void Tracker::keyframe_added(const MapAccess& map, KeyFrameId keyframe) {
   const Frame& stored = map->keyframe(keyframe).frame;
   context_.current.map_points = stored.map_points;

@@ -152,7 +152,8 @@ TEST(BadModules, OptimizersAreFound) {
         {"FindsAPose", "InstancesDoNotMeet", "LeavesAPoseThatCannotBeFound", "LeavesOutWhatHasNoWeight",
          "ManyThreadsAtOnce", "MarksInliersOfAPose", "SameProblemSameBits", "SurvivesNumbersThatAreNone"}},
        {"rounds_rotations", {"FindsAPose", "LeavesAPoseThatCannotBeFound"}},
-       {"stays_away", {"LeavesAGraphThatCannotBeSolved", "SolvesAGraph"}}});
+       {"stays_away", {"LeavesAGraphThatCannotBeSolved", "SolvesAGraph"}},
+       {"tilts", {"KeepsTheVertical"}}});
 }
 
 TEST(BadModules, LoopDetectorsAreFound) {

@@ -5,6 +5,7 @@
 
 #include "geometry/synthetic.hpp"
 #include "holdfast/geometry/relative_pose.hpp"
+#include "holdfast/geometry/upright_motion.hpp"
 
 namespace holdfast::geometry {
 namespace {
@@ -116,6 +117,46 @@ TEST(RelativePose, DerivativesAgreeWithDifferences) {
       EXPECT_LT((error.by_from.col(i) - by_from).norm(), 1e-7) << turn << " column " << i;
       EXPECT_LT((error.by_to.col(i) - by_to).norm(), 1e-7) << turn << " column " << i;
     }
+  }
+}
+
+TEST(UprightBasis, KeepsTheVerticalForAnyStep) {
+  Random random(7);
+  const Eigen::Vector3d vertical = Eigen::Vector3d(0.3, -0.2, 0.9).normalized();
+  for (int trial = 0; trial < 5; ++trial) {
+    const Eigen::Isometry3d pose = exp_se3(synthetic::tangent(random, 2.0, 2.0));
+    const UprightBasis basis = upright_basis(pose.linear(), vertical);
+    EXPECT_LT((basis.transpose() * basis - Eigen::Matrix4d::Identity()).norm(), 1e-14);
+    const Eigen::Isometry3d moved = exp_se3(basis * Eigen::Vector4d(0.4, -1.2, 0.7, 2.5)) * pose;
+    EXPECT_LT((moved.linear() * vertical - pose.linear() * vertical).norm(), 1e-14);
+    const Eigen::Matrix3d turn = moved.linear().transpose() * pose.linear();  // of the camera in the world
+    EXPECT_LT((turn - exp_so3(2.5 * vertical).toRotationMatrix()).norm(), 1e-13);
+  }
+}
+
+TEST(UprightBasis, DerivativesAgreeWithDifferences) {
+  Random random(8);
+  const Eigen::Vector3d vertical = Eigen::Vector3d(-0.1, 0.97, 0.2).normalized();
+  const Eigen::Isometry3d from = exp_se3(synthetic::tangent(random, 1.0, 0.8));
+  const Eigen::Isometry3d T_from_to = exp_se3(synthetic::tangent(random, 0.5, 0.3));
+  const Eigen::Isometry3d to = exp_se3(synthetic::tangent(random, 0.5, 0.4)) * T_from_to.inverse() * from;
+  const UprightBasis of_from = upright_basis(from.linear(), vertical), of_to = upright_basis(to.linear(), vertical);
+  const RelativePoseError error = relative_pose_error(T_from_to, from, to);
+  const Eigen::Matrix<double, 6, 4> by_from = error.by_from * of_from, by_to = error.by_to * of_to;
+  for (int i = 0; i < 4; ++i) {
+    // In the world: a translation of the camera, and a turn about the vertical at its place.
+    const auto moved = [&](const Eigen::Isometry3d& T_camera_world, double step) {
+      Eigen::Isometry3d T_world_camera = T_camera_world.inverse();
+      if (i < 3) T_world_camera.pretranslate(step * Eigen::Vector3d::Unit(i));
+      if (i == 3) T_world_camera.linear() = exp_so3(step * vertical).toRotationMatrix() * T_world_camera.linear();
+      return T_world_camera.inverse();
+    };
+    const Vector6d from_difference = relative_pose_residual(T_from_to, moved(from, 1e-6), to) -
+                                     relative_pose_residual(T_from_to, moved(from, -1e-6), to);
+    const Vector6d to_difference = relative_pose_residual(T_from_to, from, moved(to, 1e-6)) -
+                                   relative_pose_residual(T_from_to, from, moved(to, -1e-6));
+    EXPECT_LT((by_from.col(i) - from_difference / 2e-6).norm(), 1e-7) << i;
+    EXPECT_LT((by_to.col(i) - to_difference / 2e-6).norm(), 1e-7) << i;
   }
 }
 

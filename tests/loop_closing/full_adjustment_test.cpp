@@ -109,6 +109,21 @@ TEST_F(FullAdjustmentTest, InertialMeasurementsPlaceKeyframesWithoutPoints) {
   EXPECT_EQ(adjustment.placed_keyframes().size(), 19U) << "all but the first, which is fixed";
 }
 
+TEST_F(FullAdjustmentTest, KeepsVelocitiesOfTheKeyframesThatItLinks) {
+  const std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
+  ASSERT_TRUE(adjustment.run().applied);
+  for (const KeyFrameId id : keyframes) EXPECT_FALSE(map.keyframe(id).motion) << "without measurements";
+  const std::unique_ptr<InertialHistory> history = measured_ring();
+  adjustment.use_inertia(*history);
+  ASSERT_TRUE(adjustment.run().applied);
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    ASSERT_TRUE(map.keyframe(keyframes[i]).motion) << i;
+    const Eigen::Isometry3d truth = test::RingWorld::pose_at(0.1 * static_cast<double>(i));
+    const Eigen::Vector3d expected = Eigen::Vector3d(0.0, 0.1, 0.0).cross(truth.translation());
+    EXPECT_LT((map.keyframe(keyframes[i]).motion->velocity - expected).norm(), 0.01) << i;
+  }
+}
+
 TEST_F(FullAdjustmentTest, AKeyframeThatFollowsItsParentWasNotPlaced) {
   for (const MapPointId point : std::vector<MapPointId>(map.keyframe(last).frame.map_points))
     if (point.valid()) map.remove_observation(point, last);

@@ -29,6 +29,8 @@ class InterruptedOptimizer final : public Optimizer {
     return solvable ? optimizer_.optimize_pose_graph(problem) : GraphSummary{};
   }
 
+  bool keeps_vertical() const override { return optimizer_.keeps_vertical(); }
+
   std::function<void()> meanwhile;
   bool solvable = true;
 
@@ -53,6 +55,8 @@ class LoopCloserTest : public testing::Test {
   std::optional<ClosedLoop> walk(test::RingWorld& world, double from, double to, int keyframes) {
     for (int i = 0; i < keyframes; ++i) {
       const KeyFrameId id = world.add_keyframe(map, from + (to - from) * i / keyframes);
+      if (knows_vertical && map.next_sequence() > 3)
+        map.keyframe(id).vertical = Eigen::Vector3d::UnitY();  // cameras are upright
       error_before = world.largest_error(map);
       points_before = map.points().size();
       if (const auto loop = closer->process(id, times)) return loop;
@@ -60,6 +64,17 @@ class LoopCloserTest : public testing::Test {
     return std::nullopt;
   }
 
+  /// Largest angle by which a keyframe is tilted [rad].
+  double largest_tilt() const {
+    double largest = 0.0;
+    map.keyframes().for_each([&](KeyFrameId, const KeyFrame& keyframe) {
+      const Eigen::Vector3d down = keyframe.frame.T_camera_world.linear() * Eigen::Vector3d::UnitY();
+      largest = std::max(largest, down.cross(Eigen::Vector3d::UnitY()).norm());
+    });
+    return largest;
+  }
+
+  bool knows_vertical = false;
   LoopClosingSettings settings;
   Map map;
   MapMutex map_mutex;
@@ -177,6 +192,44 @@ TEST_F(LoopCloserTest, DriftBehindAHiddenViewIsPlausibleWithInertia) {
     else
       EXPECT_GT(closer->counts().of(LoopVerdict::implausible_correction), 3U);
   }
+}
+
+/// Behind a hidden view, odometry is tilted. Spread over all keyframes, the tilt would also bend those before it.
+TEST_F(LoopCloserTest, InertialMeasurementsKeepKeyframesUpright) {
+  Eigen::Isometry3d mistake(Eigen::Translation3d(0.3, 0.0, 0.2));
+  mistake.linear() = Eigen::AngleAxisd(0.07, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  knows_vertical = true;
+  for (const bool keeps : {false, true}) {
+    settings.keep_vertical = keeps;
+    map.clear(), detector.clear(), make_closer();
+    closer->use_inertia();
+    test::RingWorld world(0.0);
+    world.add_wall(0, round_trip, 2500);
+    ASSERT_FALSE(walk(world, 0, 0.5 * round_trip, 30));
+    world.hide_view(mistake, 2.0);
+    ASSERT_TRUE(walk(world, 0.5 * round_trip, 1.2 * round_trip, 42));
+    EXPECT_GT(error_before, 0.3);
+    if (keeps)
+      EXPECT_LT(largest_tilt(), 1e-9);
+    else
+      EXPECT_GT(largest_tilt(), 0.01);
+  }
+}
+
+TEST_F(LoopCloserTest, SubmapsAreJoinedUpright) {
+  test::RingWorld world(0.0);
+  world.add_wall(0, round_trip, 2500);
+  knows_vertical = settings.keep_vertical = true;
+  make_closer();
+  ASSERT_FALSE(walk(world, 0, 0.4 * round_trip, 24));
+  Eigen::Isometry3d mistake(Eigen::Translation3d(1.0, 0.1, 0.2));
+  mistake.linear() = Eigen::AngleAxisd(0.7, Eigen::Vector3d(0.4, 1.0, 0.1).normalized()).toRotationMatrix();
+  world.begin_submap(map, mistake);
+  const auto loop = walk(world, 0.5 * round_trip, 1.2 * round_trip, 42);
+  ASSERT_TRUE(loop);
+  EXPECT_TRUE(loop->joins_submaps);
+  EXPECT_LT(largest_tilt(), 1e-9);
+  EXPECT_LT(world.largest_error(map), 0.05);
 }
 
 TEST_F(LoopCloserTest, HiddenViewsDoNotMakeEveryDriftPlausible) {

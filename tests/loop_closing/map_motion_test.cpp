@@ -66,6 +66,22 @@ class MapMotionTest : public testing::Test {
   MapPointId common_;
 };
 
+TEST_F(MapMotionTest, AVelocityTurnsWithItsKeyframe) {
+  const Eigen::Vector3d velocity(0.3, -0.2, 0.5);
+  for (const KeyFrameId id : ids_) map_.keyframe(id).motion = KeyFrameMotion{velocity, {}};
+  const std::vector<Eigen::Isometry3d> before = {map_.pose_of(ids_[0]), map_.pose_of(ids_[1]), map_.pose_of(ids_[2])};
+  const std::array<Eigen::Isometry3d, 2> poses = {pose(1, 2, 3, 0.4), pose(-1, 0, 2, -0.3)};
+  apply(MapMotion(map_, std::span(ids_).first(2), poses));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const KeyFrame& keyframe = map_.keyframe(ids_[i]);
+    EXPECT_LT(
+        (keyframe.frame.T_camera_world.linear() * keyframe.motion->velocity - before[i].linear() * velocity).norm(),
+        1e-12)
+        << i << ": as the camera sees it";
+    EXPECT_GT((keyframe.motion->velocity - velocity).norm(), 0.01) << i;
+  }
+}
+
 TEST_F(MapMotionTest, APointStaysWhereItsKeyframeSeesItInTheKeyframesScale) {
   std::array<std::vector<Eigen::Vector3d>, 4> before;
   for (int k = 0; k < 4; ++k) before[static_cast<std::size_t>(k)] = seen(k);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "holdfast/core/map_inertia.hpp"
+#include "holdfast/core/map.hpp"
 
 namespace holdfast::test {
 
@@ -35,6 +35,18 @@ inline bool are_same(const MapInertia& a, const MapInertia& b) {
          a.time_offset_deviation == b.time_offset_deviation && a.position_deviation == b.position_deviation &&
          a.rotation_deviation == b.rotation_deviation && a.T_body_camera.matrix() == b.T_body_camera.matrix() &&
          a.calibrated_time_offset == b.calibrated_time_offset;
+}
+
+/// Some keyframes get a vertical, some a motion, some both, the first none.
+inline void add_motions(Map& map) {
+  int i = 0;
+  for (const KeyFrameId id : map.keyframes_by_age()) {
+    KeyFrame& keyframe = map.keyframe(id);
+    if (i % 2 == 1) keyframe.vertical = Eigen::Vector3d(0.1 * i, 0.9, -0.2).normalized();
+    if (i % 3 == 2)
+      keyframe.motion = KeyFrameMotion{{0.1 * i, -0.2, 0.3}, {{0.01, 0.02 * i, 0.03}, {0.1, -0.2, 0.3 + i}}};
+    ++i;
+  }
 }
 
 }  // namespace holdfast::test

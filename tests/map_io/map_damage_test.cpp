@@ -236,6 +236,32 @@ TEST_F(MapDamage, Votes) {
   EXPECT_EQ(refusal_with(votes + 6, 5U), "");
 }
 
+TEST_F(MapDamage, MotionsOfKeyframes) {
+  Map map = random_map(4, 10, 9);
+  test::add_motions(map);
+  const std::string bytes = bytes_of(map);
+  const std::size_t first = find_section(bytes, "MOTN") + 24 + 4;  // keyframe 1, which has a vertical
+  const std::size_t second = first + 8 + 24;                       // keyframe 2, which has a motion
+  const auto refusal_with = [&](std::size_t offset, auto value) {
+    std::string changed = bytes;
+    put_at(changed, offset, value);
+    repair_checksums(changed);
+    return refusal_of(changed);
+  };
+  EXPECT_EQ(refusal_with(first, 0U), "");
+  EXPECT_THAT(refusal_with(first - 4, 1000U), HasSubstr("keyframes with a vertical or a motion"));
+  EXPECT_THAT(refusal_with(first, 4U), HasSubstr("expected increasing keyframes below 4"));
+  EXPECT_THAT(refusal_with(second, 1U), HasSubstr("found keyframe 1 with flags 2; expected increasing keyframes"));
+  EXPECT_THAT(refusal_with(first + 4, 0U), HasSubstr("flags 1 to 3"));
+  EXPECT_THAT(refusal_with(first + 4, 4U), HasSubstr("flags 1 to 3"));
+  EXPECT_NE(refusal_with(first + 4, 3U), "");
+  EXPECT_THAT(refusal_with(first + 16, 2.0), HasSubstr("keyframe 1: length of the vertical is"));
+  EXPECT_THAT(refusal_with(second + 8, 1e5), HasSubstr("keyframe 2: speed is"));
+  EXPECT_THAT(refusal_with(second + 8 + 3 * 8, 101.0), HasSubstr("keyframe 2: bias is"));
+  for (std::size_t number = 0; number < 9; ++number)
+    EXPECT_NE(refusal_with(second + 8 + 8 * number, std::numeric_limits<double>::quiet_NaN()), "") << number;
+}
+
 TEST_F(MapDamage, EstimatesOfAnImu) {
   Map map = random_map(4, 10, 9);
   map.set_inertia(test::example_inertia());

@@ -145,6 +145,13 @@ TEST_F(MapExport, AllAsJson) {
   EXPECT_TRUE(with_classes["points"][1]["label"].is_null());
   EXPECT_TRUE(with_classes["inertia"].is_null());
   classified.set_inertia(test::example_inertia());
+  EXPECT_FALSE(with_classes["keyframes"][2].contains("velocity"));
+  test::add_motions(classified);
+  const auto keyframes = nlohmann::json::parse(map_json(classified))["keyframes"];
+  EXPECT_EQ(keyframes[2]["velocity"][1], -0.2);
+  EXPECT_EQ(keyframes[2]["accelerometer_bias"][2], 2.3);
+  EXPECT_FALSE(keyframes[2].contains("vertical"));
+  EXPECT_GT(keyframes[1]["vertical"][1], 0.9);
   EXPECT_EQ(nlohmann::json::parse(map_json(classified))["inertia"]["gravity"][1], -9.5);
 }
 

@@ -369,6 +369,39 @@ TEST_F(MapFile, HoldsEstimatesOfAnImu) {
   EXPECT_FALSE(map.inertia()) << "of the map before";
 }
 
+TEST_F(MapFile, HoldsVerticalsAndMotionsOfKeyframes) {
+  Map map = random_map(8, 20, 22);
+  map.set_inertia(test::example_inertia());
+  write_map(path("none.hfm"), map);
+  const std::string without = content(path("none.hfm"));
+
+  test::add_motions(map);
+  write_map(path("motions.hfm"), map);
+  const Map again = read_map(path("motions.hfm"));
+  const std::vector<KeyFrameId> before = map.keyframes_by_age(), after = again.keyframes_by_age();
+  std::size_t bytes_of_entries = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const KeyFrame &was = map.keyframe(before[i]), &is = again.keyframe(after[i]);
+    EXPECT_EQ(is.vertical, was.vertical) << i;
+    ASSERT_EQ(is.motion.has_value(), was.motion.has_value()) << i;
+    if (was.vertical || was.motion) bytes_of_entries += 8U + (was.vertical ? 24U : 0U) + (was.motion ? 72U : 0U);
+    if (!was.motion) continue;
+    EXPECT_EQ(is.motion->velocity, was.motion->velocity) << i;
+    EXPECT_EQ(is.motion->bias.gyroscope, was.motion->bias.gyroscope) << i;
+    EXPECT_EQ(is.motion->bias.accelerometer, was.motion->bias.accelerometer) << i;
+  }
+  write_map(path("again.hfm"), again);
+  const std::string bytes = content(path("motions.hfm"));
+  EXPECT_TRUE(bytes == content(path("again.hfm")));
+
+  // Readers that do not know the section leave it out.
+  const std::size_t section = test::find_section(bytes, "MOTN");
+  EXPECT_EQ(test::number_at<std::uint32_t>(bytes, section + 4) & 1U, 0U);
+  EXPECT_EQ(bytes.size() - section, 24U + 4U + bytes_of_entries) << "as docs/map_format.md says";
+  EXPECT_EQ(bytes.substr(76, section - 76), without.substr(76));
+  EXPECT_FALSE(read_map(path("none.hfm")).keyframe(after[2]).motion);
+}
+
 TEST_F(MapFile, SharedCamerasStayShared) {
   write_map(path("map.hfm"), random_map(15, 30, 5));
   const Map map = read_map(path("map.hfm"));

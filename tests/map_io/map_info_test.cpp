@@ -95,6 +95,16 @@ TEST_F(MapInfoTest, CountsClasses) {
   EXPECT_EQ(json["classes"]["a \"cat\"\x1b[31m"], 1);
 }
 
+TEST_F(MapInfoTest, CountsVelocities) {
+  Map map = random_map(7, 20, 5);
+  write_map(path("map.hfm"), map);
+  EXPECT_THAT(to_text(read_map_info(path("map.hfm"))), Not(HasSubstr("velocities")));
+  test::add_motions(map);
+  write_map(path("map.hfm"), map);
+  EXPECT_THAT(to_text(read_map_info(path("map.hfm"))), HasSubstr("\nvelocities of 2 keyframes\n"));
+  EXPECT_EQ(nlohmann::json::parse(to_json(read_map_info(path("map.hfm"))))["motions"], 2);
+}
+
 TEST_F(MapInfoTest, ShowsEstimatesOfAnImu) {
   Map map = random_map(4, 20, 5);
   write_map(path("map.hfm"), map);

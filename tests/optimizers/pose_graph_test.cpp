@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numbers>
 
 #include "both_optimizers.hpp"
@@ -110,6 +111,67 @@ TEST_P(PoseGraph, WithoutScalesBothGraphsAreTheSame) {
     EXPECT_LT(synthetic::distance(rigid.problem.nodes[i].T_camera_world, similar.problem.nodes[i].T_camera_world),
               1e-9);
     EXPECT_NEAR(similar.problem.nodes[i].scale, 1.0, 1e-12);
+  }
+}
+
+/// The largest angle by which the vertical of a node differs from the truth [rad].
+double largest_tilt(const Loop& loop, const Eigen::Vector3d& vertical) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < loop.truth.size(); ++i)
+    largest = std::max(
+        largest,
+        (loop.problem.nodes[i].T_camera_world.linear() * vertical).cross(loop.truth[i].linear() * vertical).norm());
+  return largest;
+}
+
+/// The path drifts in position and yaw alone, as one with inertial measurements does; the loop is measured with a tilt.
+Loop tilted_loop() {
+  constexpr int count = 60;
+  Loop loop(count);
+  geometry::Vector6d drift;
+  drift << 0.01, 0.005, -0.004, 0.0, 0.006, 0.0;
+  for (int i = 1; i < count; ++i) {
+    loop.problem.edges[i - 1].T_to_from = geometry::exp_se3(drift) * loop.truth[i] * loop.truth[i - 1].inverse();
+    loop.problem.nodes[i].T_camera_world =
+        loop.problem.edges[i - 1].T_to_from * loop.problem.nodes[i - 1].T_camera_world;
+  }
+  Eigen::Isometry3d& closing = loop.problem.edges.back().T_to_from;
+  closing.linear() = closing.linear() * geometry::exp_so3(Eigen::Vector3d(0.06, 0, 0.03)).toRotationMatrix();
+  return loop;
+}
+
+TEST_P(PoseGraph, WithAVerticalNothingTilts) {
+  const Eigen::Vector3d down(0.0, 9.81, 0.0);
+  Loop six = tilted_loop(), four = tilted_loop();
+  ASSERT_LT(largest_tilt(six, down.normalized()), 1e-12);
+  const double before = six.largest_error();
+  ASSERT_TRUE(make()->keeps_vertical());
+  ASSERT_TRUE(make()->optimize_pose_graph(six.problem).usable);
+  four.problem.vertical = down;
+  ASSERT_TRUE(make()->optimize_pose_graph(four.problem).usable);
+  EXPECT_GT(largest_tilt(six, down.normalized()), 0.02);
+  EXPECT_LT(largest_tilt(four, down.normalized()), 1e-12);
+  EXPECT_LT(four.largest_error(), 0.35 * before);
+  EXPECT_EQ(four.problem.nodes[0].T_camera_world.matrix(), four.truth[0].matrix());
+}
+
+TEST_P(PoseGraph, WithAVerticalAndScales) {
+  const Eigen::Vector3d down = Eigen::Vector3d::UnitY();
+  Loop loop = tilted_loop();
+  loop.problem.vertical = down;
+  loop.problem.edges.back().scale = 1.3;
+  ASSERT_TRUE(make()->optimize_similarity_graph(loop.problem).usable);
+  EXPECT_LT(largest_tilt(loop, down), 1e-12);
+  EXPECT_GT(loop.problem.nodes[59].scale, 1.1);
+}
+
+TEST_P(PoseGraph, RefusesAVerticalWithoutADirection) {
+  for (const double length : {0.0, std::numeric_limits<double>::quiet_NaN()}) {
+    Loop loop = tilted_loop();
+    const Eigen::Matrix4d before = loop.problem.nodes[5].T_camera_world.matrix();
+    loop.problem.vertical = Eigen::Vector3d::Constant(length);
+    EXPECT_FALSE(make()->optimize_pose_graph(loop.problem).usable);
+    EXPECT_EQ(loop.problem.nodes[5].T_camera_world.matrix(), before);
   }
 }
 

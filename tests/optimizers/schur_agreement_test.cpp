@@ -76,8 +76,8 @@ TEST(SchurAgreesWithCeres, WithTwoObservationsOfAPointByOnePose) {
   expect_agreement(problem, "two observations by one pose");
 }
 
-TEST(SchurAgreesWithCeres, OnPoseGraphs) {
-  Random random(10);
+PoseGraphProblem random_graph(std::uint64_t seed) {
+  Random random(seed);
   PoseGraphProblem problem;
   for (std::uint32_t i = 0; i < 50; ++i) {
     const Eigen::Isometry3d truth = geometry::exp_se3(synthetic::tangent(random, 2.0, 0.6));
@@ -91,6 +91,10 @@ TEST(SchurAgreesWithCeres, OnPoseGraphs) {
     }
   }
   problem.iterations = 100;
+  return problem;
+}
+
+void expect_agreement(PoseGraphProblem problem) {
   PoseGraphProblem reference = problem;
   const GraphSummary expected = make_optimizer("ceres", {{"function_tolerance", 0.0}})->optimize_pose_graph(reference);
   const GraphSummary found = make_optimizer("schur", {{"graph_tolerance", 0.0}})->optimize_pose_graph(problem);
@@ -99,6 +103,14 @@ TEST(SchurAgreesWithCeres, OnPoseGraphs) {
   EXPECT_NEAR(found.final_cost, expected.final_cost, 1e-6 * expected.final_cost);
   for (std::size_t i = 0; i < problem.nodes.size(); ++i)
     EXPECT_LT(synthetic::distance(problem.nodes[i].T_camera_world, reference.nodes[i].T_camera_world), 1e-6) << i;
+}
+
+TEST(SchurAgreesWithCeres, OnPoseGraphs) { expect_agreement(random_graph(10)); }
+
+TEST(SchurAgreesWithCeres, OnPoseGraphsWithAVertical) {
+  PoseGraphProblem problem = random_graph(12);
+  problem.vertical = Eigen::Vector3d(0.4, -9.7, 1.1);
+  expect_agreement(problem);
 }
 
 /// With its default tolerances it ends well within the uncertainty of the poses. The costs differ more, because a few

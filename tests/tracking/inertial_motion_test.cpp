@@ -257,6 +257,26 @@ TEST(InertialMotion, BridgesAViewWithACovarianceThatGrows) {
   EXPECT_LT(chi_square, 1.5);
 }
 
+/// What a bridge goes on with: an error of it grows to centimetres within a second.
+TEST(InertialMotion, KnowsTheVelocityWhenABridgeBegins) {
+  for (const double unit : {1.0, 0.4}) {
+    double squares = 0.0, chi_square = 0.0;
+    const int runs = 20;
+    for (int run = 0; run < runs; ++run) {
+      InertialBench bench(6.5, false, unit, static_cast<std::uint64_t>(run) + 1);
+      bench.track(6.0);
+      ASSERT_TRUE(bench.motion.is_reliable()) << unit << " run " << run;
+      const InertialFilter& filter = *bench.motion.filter();
+      const Vector3d error = filter.state().velocity - bench.T_map_world.linear() * bench.state(bench.time).velocity;
+      squares += error.squaredNorm() / runs;
+      const double deviation = filter.deviations().velocity;
+      chi_square += error.squaredNorm() / (3.0 * runs * deviation * deviation);
+    }
+    EXPECT_LT(std::sqrt(squares), 0.02) << unit << " [m/s]";
+    EXPECT_LT(chi_square, 1.5) << unit << ": the deviation that it states";
+  }
+}
+
 TEST(InertialMotion, OneCameraGetsItsScale) {
   InertialBench bench(6.5, false, 0.4);
   bench.track(4.9);

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "holdfast/core/frame.hpp"
 #include "holdfast/core/id.hpp"
+#include "holdfast/core/map_inertia.hpp"
 
 namespace holdfast {
 
@@ -29,6 +31,10 @@ struct KeyFrame {
   /// of poses stored relative to this keyframe. It is not saved in map files.
   double scale = 1.0;
   std::vector<KeyFrameId> loop_edges;  ///< other ends of closed loops; a keyframe with one is never culled
+  /// Direction of gravity in the frame of the camera, a unit vector, as tracking knew it by inertial measurements when
+  /// the keyframe was made.
+  std::optional<Eigen::Vector3d> vertical;
+  std::optional<KeyFrameMotion> motion;  ///< only if an adjustment with inertial measurements placed the keyframe
 };
 
 }  // namespace holdfast

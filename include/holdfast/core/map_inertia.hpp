@@ -33,4 +33,11 @@ struct MapInertia {
   double calibrated_time_offset = 0.0;  ///< [s]
 };
 
+/// State of the IMU at a keyframe, as the last adjustment with inertial measurements found it.
+struct KeyFrameMotion {
+  /// Of the IMU in the world frame [m/s], in metres whatever the unit of the map.
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  ImuBias bias;
+};
+
 }  // namespace holdfast

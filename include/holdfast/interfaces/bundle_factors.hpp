@@ -16,7 +16,8 @@ enum class FactorKind { inertial, relative_pose, prior };
 
 /// What a bundle adjustment has besides poses, points and observations: the states of a body with an IMU, and factors,
 /// each with half the squared residual, weighted by its information, as its cost. Poses are indices into
-/// BundleProblem::poses. Empty in a visual problem.
+/// BundleProblem::poses. Empty in a visual problem. Measured depth needs no factor: it is the column `right_x` of its
+/// observation, with the deviation of a disparity.
 ///
 /// The body stands at T_world_camera * T_camera_body, with the translation of T_world_camera multiplied by `scale`.
 /// Rotations and translations of a pose are perturbed from the left, exp(d) * T_camera_world, d = (translation [m],

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -120,6 +121,10 @@ struct PoseGraphProblem {
   };
   std::vector<Node> nodes;
   std::vector<Edge> edges;
+  /// Direction of gravity in the world frame, of any length. With it, nodes have four degrees of freedom, position and
+  /// yaw about it, and keep roll and pitch (Qin, Li and Shen, "VINS-Mono", T-RO 2018, section VIII; Campos et al.,
+  /// "ORB-SLAM3", T-RO 2021, section VII); without it, six. Only for optimizers that keep it (keeps_vertical()).
+  std::optional<Eigen::Vector3d> vertical;
   int iterations = 20;
 };
 
@@ -148,6 +153,8 @@ class Optimizer : public Module {
   /// `stop` is read between iterations.
   virtual BundleSummary optimize_bundle(BundleProblem& problem, const std::atomic<bool>& stop) = 0;
   virtual GraphSummary optimize_pose_graph(PoseGraphProblem& problem) = 0;
+  /// Whether optimize_pose_graph() obeys PoseGraphProblem::vertical; others ignore it.
+  virtual bool keeps_vertical() const { return false; }
   /// Pose graph over Sim(3) for monocular maps with scale drift (Strasdat, Montiel and Davison, "Scale drift-aware
   /// large scale monocular SLAM", RSS 2010). The default optimizes the scales first (a linear problem in their
   /// logarithms), and then the poses in the scaled units by optimize_pose_graph(). Nodes keep scale 1 when the summary

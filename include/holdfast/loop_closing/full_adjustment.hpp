@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "holdfast/core/map.hpp"
@@ -67,6 +68,7 @@ class FullAdjustment {
   void copy_points();
   void change_map();
   void move_map();
+  void keep_motions(std::span<const Eigen::Isometry3d> poses);
   void remove_outliers();
 
   LoopClosingSettings settings_;

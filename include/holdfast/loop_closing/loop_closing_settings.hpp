@@ -46,7 +46,10 @@ struct LoopClosingSettings {
   double turn_per_metre = 0.5;
   /// Minimum covisibility weight of an edge of the essential graph; 100 as in ORB-SLAM (section III-D).
   int essential_weight = 100;
-  int graph_iterations = 30;        ///< maximum iterations of the pose graph
+  int graph_iterations = 30;  ///< maximum iterations of the pose graph
+  /// With inertial measurements, keyframes get the roll and pitch that these say, and the pose graph has four degrees
+  /// of freedom.
+  bool keep_vertical = false;
   bool full_adjustment = true;      ///< whether full bundle adjustment follows a loop closure
   int full_robust_iterations = 20;  ///< its maximum iterations with the robust cost
   int full_final_iterations = 40;   ///< its maximum iterations after the removal of outliers

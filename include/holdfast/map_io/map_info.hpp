@@ -31,6 +31,7 @@ struct MapInfo {
   std::uint64_t observations = 0;
   std::vector<std::pair<std::string, std::uint64_t>> classes;  ///< name and number of points, by label
   std::optional<MapInertia> inertia;
+  std::uint64_t motions = 0;             ///< keyframes with a velocity (KeyFrame::motion)
   std::uint64_t covisibility_edges = 0;  ///< each pair once
   std::uint64_t loops = 0;               ///< each pair once
   std::uint64_t next_sequence = 0;

@@ -88,6 +88,10 @@ class InertialMotion {
   void relocated() { interrupt(); }
   /// Begins again with nothing known, as where the map begins.
   void reset();
+  /// Gravity in the world of the map [m/s^2]; empty unless the state at the last frame is reliable.
+  std::optional<Eigen::Vector3d> gravity() const {
+    return last_ && confirmations_ >= required_confirmations ? std::optional(last_->gravity()) : std::nullopt;
+  }
   /// The estimates, for maps: of the current state if it is reliable, or else what a filter begins with.
   std::optional<MapInertia> estimates() const;
 

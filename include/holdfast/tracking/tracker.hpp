@@ -101,6 +101,9 @@ class Tracker {
   std::uint32_t main_submap(const MapAccess& map) const { return context_.history.main_submap(map.map()); }
   /// Estimates from inertial measurements in the world of a submap: of this run, or else of the map that it continues.
   std::optional<MapInertia> inertia_of(const MapAccess& map, std::uint32_t submap) const;
+  /// Direction of gravity in the frame of the camera at the last frame, a unit vector; empty unless inertial
+  /// measurements determine it.
+  std::optional<Eigen::Vector3d> vertical(const MapAccess& map) const;
   /// Current poses of the tracked frames of the main submap. Poses are stored relative to keyframes, so that
   /// corrections of the map move them.
   Trajectory trajectory(const MapAccess& map) const { return context_.history.trajectory(map.map()); }

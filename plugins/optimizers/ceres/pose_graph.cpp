@@ -23,8 +23,13 @@ GraphSummary adjust_pose_graph(PoseGraphProblem& problem, const CeresSettings& s
     has_fixed |= problem.nodes[i].fixed;
   }
   if (!has_fixed) return summary;
+  const Eigen::Vector3d vertical = problem.vertical.value_or(Eigen::Vector3d::UnitZ()).normalized();
+  if (!(std::abs(vertical.norm() - 1.0) < 1e-6)) return summary;
 
-  LeftPerturbation manifold;
+  LeftPerturbation all_directions;
+  UprightPerturbation upright(vertical);
+  ceres::Manifold* const manifold =
+      problem.vertical ? static_cast<ceres::Manifold*>(&upright) : static_cast<ceres::Manifold*>(&all_directions);
   std::deque<RelativePoseCost> costs;
   std::vector<std::uint8_t> used(blocks.size());
   ceres::Problem::Options problem_options;
@@ -44,7 +49,7 @@ GraphSummary adjust_pose_graph(PoseGraphProblem& problem, const CeresSettings& s
   if (costs.empty()) return summary;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (!used[i]) continue;
-    ceres_problem.SetManifold(blocks[i].data(), &manifold);
+    ceres_problem.SetManifold(blocks[i].data(), manifold);
     if (problem.nodes[i].fixed) ceres_problem.SetParameterBlockConstant(blocks[i].data());
   }
 

@@ -9,9 +9,11 @@ namespace holdfast::ceres_plugin {
 /// Pose graph optimisation on SE(3). Residual of an edge: log(T_to_from^-1 * T_to_world * T_world_from) times the
 /// square root of its weight, translation [m] before rotation [rad]; Levenberg-Marquardt with a sparse Cholesky factor.
 ///
+/// With PoseGraphProblem::vertical, nodes move by left perturbations that keep roll and pitch.
+///
 /// Not usable (nothing changed): no free node with an edge, no fixed node to hold the gauge, numbers that are not
-/// finite, a solver failure. Nodes that no chain of edges ties to a fixed node are held only by the damping. Indices
-/// out of range throw CheckError.
+/// finite, a vertical without a direction, a solver failure. Nodes that no chain of edges ties to a fixed node are held
+/// only by the damping. Indices out of range throw CheckError.
 GraphSummary adjust_pose_graph(PoseGraphProblem& problem, const CeresSettings& settings);
 
 }  // namespace holdfast::ceres_plugin

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "holdfast/geometry/relative_pose.hpp"
+#include "holdfast/geometry/upright_motion.hpp"
 
 namespace holdfast::ceres_plugin {
 
@@ -46,6 +47,45 @@ class LeftPerturbation final : public ceres::Manifold {
     Eigen::Map<Eigen::Matrix<double, 6, 7, Eigen::RowMajor>>(jacobian).setIdentity();
     return true;
   }
+};
+
+/// Poses moved by left perturbations that keep roll and pitch (geometry::upright_basis()), for the same cost functions.
+class UprightPerturbation final : public ceres::Manifold {
+ public:
+  /// `vertical`: unit vector in the world frame.
+  explicit UprightPerturbation(const Eigen::Vector3d& vertical) : vertical_(vertical) {}
+
+  int AmbientSize() const override { return 7; }
+  int TangentSize() const override { return 4; }
+  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override {
+    const Eigen::Isometry3d pose = pose_of(x);
+    store(geometry::exp_se3(basis(pose) * Eigen::Vector4d::Map(delta)) * pose, x_plus_delta);
+    return true;
+  }
+  bool PlusJacobian(const double* x, double* jacobian) const override {
+    Eigen::Map<Eigen::Matrix<double, 7, 4, Eigen::RowMajor>> block(jacobian);
+    block.topRows<6>() = basis(pose_of(x));
+    block.row(6).setZero();
+    return true;
+  }
+  bool Minus(const double* y, const double* x, double* y_minus_x) const override {
+    const Eigen::Isometry3d pose = pose_of(x);
+    Eigen::Vector4d::Map(y_minus_x) = basis(pose).transpose() * geometry::log_se3(pose_of(y) * pose.inverse());
+    return true;
+  }
+  bool MinusJacobian(const double* x, double* jacobian) const override {
+    Eigen::Map<Eigen::Matrix<double, 4, 7, Eigen::RowMajor>> block(jacobian);
+    block.leftCols<6>() = basis(pose_of(x)).transpose();
+    block.col(6).setZero();
+    return true;
+  }
+
+ private:
+  geometry::UprightBasis basis(const Eigen::Isometry3d& pose) const {
+    return geometry::upright_basis(pose.linear(), vertical_);
+  }
+
+  Eigen::Vector3d vertical_;
 };
 
 /// Residual log(T_to_from^-1 * T_to * T_from^-1) * scale; blocks: the poses `from` and `to`.

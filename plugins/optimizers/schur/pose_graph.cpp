@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "block_system.hpp"
 #include "damping.hpp"
 #include "holdfast/core/check.hpp"
 #include "holdfast/geometry/relative_pose.hpp"
+#include "holdfast/geometry/upright_motion.hpp"
 
 namespace holdfast::schur_plugin {
 
@@ -50,10 +52,14 @@ class PoseGraph {
   void linearise();
   /// Fills moved_poses_; returns whether the damped system could be solved.
   bool find_step(double& predicted_decrease);
+  /// With a vertical, the directions in which a node moves; the last two columns are zero, so that blocks keep their
+  /// size and the steps along them are zero.
+  Matrix6d directions_of(std::uint32_t node) const;
   static void add(double* block, const Matrix6d& value) { Eigen::Map<Matrix6d>(block) += value; }
 
   PoseGraphProblem& problem_;
   const SchurSettings& settings_;
+  std::optional<Eigen::Vector3d> vertical_;  // unit
   Damping damping_;
   std::vector<Eigen::Isometry3d> poses_, moved_poses_;
   std::vector<ActiveEdge> edges_;
@@ -70,6 +76,8 @@ bool PoseGraph::choose() {
     has_fixed |= node.fixed;
   }
   if (!has_fixed) return false;
+  if (problem_.vertical) vertical_ = problem_.vertical->normalized();
+  if (vertical_ && !(std::abs(vertical_->norm() - 1.0) < 1e-6)) return false;
   std::vector<std::int32_t> number(poses_.size(), -1);
   std::vector<std::uint8_t> used(poses_.size());
   for (std::size_t i = 0; i < problem_.edges.size(); ++i) {
@@ -113,8 +121,12 @@ void PoseGraph::linearise() {
   system_.set_zero();
   gradient_.setZero();
   for (const ActiveEdge& edge : edges_) {
-    const geometry::RelativePoseError error =
+    geometry::RelativePoseError error =
         geometry::relative_pose_error(edge.T_from_to, poses_[edge.from], poses_[edge.to]);
+    if (vertical_) {
+      error.by_from = (error.by_from * directions_of(edge.from)).eval();
+      error.by_to = (error.by_to * directions_of(edge.to)).eval();
+    }
     const auto add_node = [&](std::int32_t node, const Matrix6d& jacobian) {
       if (node < 0) return;
       const auto i = static_cast<std::size_t>(node);
@@ -145,10 +157,19 @@ bool PoseGraph::find_step(double& predicted_decrease) {
   step_ = -gradient_;
   if (!system_.solve(step_)) return false;
   predicted_decrease = 0.5 * (step_.dot(diagonal_.cwiseProduct(step_)) - gradient_.dot(step_));
-  for (std::size_t i = 0; i < free_nodes_.size(); ++i)
-    moved_poses_[free_nodes_[i]] =
-        geometry::exp_se3(step_.segment<6>(static_cast<Eigen::Index>(6 * i))) * poses_[free_nodes_[i]];
+  for (std::size_t i = 0; i < free_nodes_.size(); ++i) {
+    const std::uint32_t node = free_nodes_[i];
+    Vector6d step = step_.segment<6>(static_cast<Eigen::Index>(6 * i));
+    if (vertical_) step = (directions_of(node) * step).eval();
+    moved_poses_[node] = geometry::exp_se3(step) * poses_[node];
+  }
   return true;
+}
+
+Matrix6d PoseGraph::directions_of(std::uint32_t node) const {
+  Matrix6d directions = Matrix6d::Zero();
+  directions.leftCols<4>() = geometry::upright_basis(poses_[node].linear(), *vertical_);
+  return directions;
 }
 
 void PoseGraph::minimise(GraphSummary& summary) {

@@ -21,6 +21,7 @@ class SchurOptimizer final : public Optimizer {
   bool supports(FactorKind) const override { return true; }
   BundleSummary optimize_bundle(BundleProblem& problem, const std::atomic<bool>& stop) override;
   GraphSummary optimize_pose_graph(PoseGraphProblem& problem) override;
+  bool keeps_vertical() const override { return true; }
 
  private:
   SchurSettings settings_;

@@ -44,10 +44,13 @@ class FaultyOptimizer final : public Optimizer {
   }
 
   GraphSummary optimize_pose_graph(PoseGraphProblem& problem) override {
+    if (fault_ == "tilts") problem.vertical.reset();
     GraphSummary summary = ceres_->optimize_pose_graph(problem);
     if (fault_ == "stays_away" && problem.nodes.size() > 3) problem.nodes[3].T_camera_world.translation().y() += 0.1;
     return summary;
   }
+
+  bool keeps_vertical() const override { return ceres_->keeps_vertical(); }
 
  private:
   std::string fault_;
@@ -60,7 +63,7 @@ void add_optimizers(Registry& registry) {
   add_faults<Optimizer, FaultyOptimizer>(
       registry, {"sound", "ignores_weights", "forgets_inliers", "miscounts", "moves_unusable", "no_number",
                  "rounds_rotations", "counts_calls", "no_covariance", "never_stops", "moves_fixed", "stays_away",
-                 "denies_factors", "ignores_factors"});
+                 "denies_factors", "ignores_factors", "tilts"});
 }
 
 }  // namespace holdfast::bad
