@@ -16,10 +16,8 @@ bool correct_rows_without_map(TrackingContext& context, const FeatureMatcher& ma
                               StageTimes& times) {
   Frame& frame = context.current;
   const bool is_first = context.previous.size() == 0;
-  // Over a longer time than that of TrackingContext::interval(), the mean rotation does not tell that at the exposure.
-  constexpr double longest_interval = 0.2;  // s
-  if (!context.shutter.is_active() || (!is_first && frame.timestamp - context.previous.timestamp > longest_interval))
-    return true;
+  const bool was_paused = !is_first && frame.timestamp - context.previous.timestamp > FrameMotion::longest_interval;
+  if (!context.shutter.is_active() || was_paused) return true;
   const float max_distance =
       distance_limit(context.settings.strict_distance, frame.features.descriptors.type().strict_distance);
   constexpr int rounds = 2;  // the second one compares corrected features

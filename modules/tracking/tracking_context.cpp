@@ -34,9 +34,8 @@ double TrackingContext::odometry_limit() const {
 }
 
 std::optional<double> TrackingContext::interval() const {
-  constexpr double max_interval = 0.2;  // s
   const double interval = current.timestamp - history.last_timestamp();
-  return interval > max_interval ? std::nullopt : std::optional(interval);
+  return interval > FrameMotion::longest_interval ? std::nullopt : std::optional(interval);
 }
 
 std::optional<FrameMotion> TrackingContext::motion_by(const Eigen::Isometry3d& step) const {

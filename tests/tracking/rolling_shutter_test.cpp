@@ -11,7 +11,11 @@
 #include <vector>
 
 #include "holdfast/core/scale_pyramid.hpp"
+#include "holdfast/tracking/no_depth.hpp"
+#include "holdfast/tracking/tracker.hpp"
 #include "holdfast/tracking/view_motion.hpp"
+#include "support/brute_force_detector.hpp"
+#include "support/pose_optimizer.hpp"
 
 namespace holdfast {
 namespace {
@@ -123,6 +127,69 @@ TEST_F(RollingShutterTest, WithoutAMapTheRotationIsThatOfMatchedFeatures) {
   EXPECT_GT(largest_error(frame), 10.0);
   RollingShutter(RollingShutterMode::fixed, readout).correct(*found, Map(), frame);
   EXPECT_LT(largest_error(frame), 1.0);
+}
+
+/// "Extracts" the features of a frame that the test has taken, with the same random descriptors in every frame of a
+/// seed.
+class TakenFeatures final : public FeatureExtractor {
+ public:
+  void extract(const cv::Mat&, const cv::Mat&, Features& out) override {
+    out = taken;
+    std::mt19937_64 random(seed);
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out.descriptors.of_256_bits()[i] = {{random(), random(), random(), random()}};
+  }
+  const ScalePyramid& pyramid() const override { return pyramid_; }
+
+  Features taken;
+  std::uint64_t seed = 2;
+
+ private:
+  ScalePyramid pyramid_;
+};
+
+/// A camera that turns without moving, so that a map of one camera does not begin: its rows are corrected already.
+TEST_F(RollingShutterTest, OneCameraThatWaitsForItsMapCorrectsRows) {
+  Camera camera = *camera_;
+  camera.readout = readout;
+  TakenFeatures extractor;
+  NoDepth depth;
+  test::PoseOptimizer optimizer;
+  test::BruteForceDetector detector;
+  Map map;
+  map.set_sensor(Sensor::mono);
+  MovingWorld moving_world({.camera = camera}, map);
+  TrackingSettings settings;
+  settings.rolling_shutter = RollingShutterMode::fixed;
+  Tracker tracker(settings, {camera, extractor, depth, optimizer, detector, moving_world, map});
+  const MapAccess access(map);
+  const FrameMotion motion = motion_of(Eigen::Vector3d::Zero(), {0.5, 1.5, -0.8});
+  SensorFrame sensor_frame;
+  sensor_frame.colour = cv::Mat::zeros(camera.height, camera.width, CV_8UC1);
+  FrameResult result;
+  // The error of the features of the next frame, `intervals` after the last one [px].
+  const auto error_after = [&](double intervals) {
+    sensor_frame.timestamp += intervals * interval;
+    const Eigen::Isometry3d T_camera_world = motion.during(sensor_frame.timestamp);
+    extractor.taken = take(T_camera_world, motion).features;
+    moving_world.next_frame(sensor_frame.timestamp);
+    result = {};
+    tracker.begin(sensor_frame, result);
+    tracker.locate(access, sensor_frame, result);
+    ++sensor_frame.index;
+    EXPECT_EQ(result.status, TrackingStatus::waiting);
+    Frame frame = tracker.frame();
+    frame.T_camera_world = T_camera_world;
+    return largest_error(frame);
+  };
+  EXPECT_GT(error_after(0.0), 10.0) << "a first frame has no motion";
+  EXPECT_LT(error_after(1.0), 4.0) << "compared with displaced rows";
+  EXPECT_LT(error_after(1.0), 1.0);
+  EXPECT_EQ(result.failure, TrackingFailure::little_parallax);
+  EXPECT_GT(error_after(7.0), 10.0) << "the mean motion over a longer time does not tell that at the exposure";
+  extractor.seed = 3;
+  EXPECT_GT(error_after(1.0), 10.0);
+  EXPECT_EQ(result.failure, TrackingFailure::few_matches) << "nothing tells how the camera has turned";
 }
 
 TEST_F(RollingShutterTest, FeaturesWithoutDepthHaveThatOfTheirMapPoints) {

@@ -12,6 +12,10 @@ namespace holdfast {
 
 /// Motion of the camera from the previous frame to the current one.
 struct FrameMotion {
+  /// Interval above which constant velocity is no longer a valid assumption, nor the mean motion that at the exposure
+  /// [s].
+  static constexpr double longest_interval = 0.2;
+
   geometry::Vector6d tangent;  ///< log of T_current_previous [m, rad]
   double interval;             ///< [s], above 0
 

@@ -55,8 +55,7 @@ struct TrackingContext {
   double odometry_limit() const;
   /// T_current_previous by the poses of both frames.
   Eigen::Isometry3d measured_step() const { return current.T_camera_world * previous.T_world_camera(); }
-  /// Time since the last tracked frame [s]; empty if it is more than 0.2 s, when constant velocity is no longer a valid
-  /// assumption.
+  /// Time since the last tracked frame [s]; empty if it is more than FrameMotion::longest_interval.
   std::optional<double> interval() const;
   /// The motion T_current_previous = step since the last tracked frame; empty if interval() is.
   std::optional<FrameMotion> motion_by(const Eigen::Isometry3d& step) const;
