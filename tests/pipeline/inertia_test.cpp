@@ -125,9 +125,9 @@ TEST(SlowCameraWithInertia, KeepsItsPoseWithoutAView) {
 
 /// One camera with an IMU for some seconds.
 struct OneCameraWithInertia : ::testing::Test {
-  Pipeline run(int seconds) {
+  Pipeline run(int seconds, const std::string& path = "xyz") {
     const ImuCalibration imu = *find_imu("bmi055");
-    simulation::Simulator simulator(simulation::read_scene({}, {"camera.path=xyz", "seed=3", "frame_rate=20",
+    simulation::Simulator simulator(simulation::read_scene({}, {"camera.path=" + path, "seed=3", "frame_rate=20",
                                                                 "duration=" + std::to_string(seconds)}),
                                     *find_camera("tum_fr3"));
     simulation::ImuSensor sensor(simulator.path(), imu, 1);
@@ -163,6 +163,15 @@ TEST_F(OneCameraWithInertia, EndsInMetres) {
   EXPECT_NEAR(evaluate(truth, pipeline.keyframe_trajectory(), with_scale).alignment.scale, 1.0, 0.02);
   EXPECT_LT(evaluate(truth, pipeline.trajectory(), {}).absolute_error.rmse, 0.006)
       << "frames between keyframes as well";
+}
+
+/// Five seconds on this path do not determine the scale, so that tracking is visual; all of them do.
+TEST_F(OneCameraWithInertia, EndsInMetresWhereTrackingFoundNoScale) {
+  const Pipeline pipeline = run(12, "halfsphere");
+  EXPECT_FALSE(says_that_scale_is_missing(pipeline));
+  EvaluationOptions with_scale;
+  with_scale.alignment = AlignmentKind::sim3;
+  EXPECT_NEAR(evaluate(truth, pipeline.trajectory(), with_scale).alignment.scale, 1.0, 0.01);
 }
 
 TEST_F(OneCameraWithInertia, WithoutAStartItsOwnUnitIsNamed) { EXPECT_TRUE(says_that_scale_is_missing(run(3))); }
