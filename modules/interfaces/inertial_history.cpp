@@ -104,6 +104,13 @@ std::optional<MapInertia> InertialHistory::estimates() const {
   return found != estimates_.end() ? std::optional(found->second) : std::nullopt;
 }
 
+MapInertia InertialHistory::nominal() const {
+  MapInertia result;
+  result.T_body_camera = imu_.T_body_camera;
+  result.calibrated_time_offset = imu_.time_offset;
+  return result;
+}
+
 std::uint64_t InertialHistory::first_sequence() const {
   const std::lock_guard lock(mutex_);
   return first_sequence_;
@@ -143,20 +150,24 @@ std::optional<geometry::Preintegration> InertialHistory::motion_between(std::spa
 }
 
 std::vector<InertialHistory::Link> InertialHistory::links(std::span<const double> timestamps) const {
+  const std::optional<MapInertia> estimates = this->estimates();
+  return estimates ? links(timestamps, *estimates) : std::vector<Link>();
+}
+
+std::vector<InertialHistory::Link> InertialHistory::links(std::span<const double> timestamps,
+                                                          const MapInertia& estimates) const {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < timestamps.size(); ++i)
     if (!std::isnan(timestamps[i])) order.push_back(i);
   std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return timestamps[a] < timestamps[b]; });
   std::vector<Link> links;
-  const std::optional<MapInertia> estimates = this->estimates();
-  if (!estimates) return links;
   std::vector<ImuSample> samples;  // a copy, because tracking waits for the mutex
   {
     const std::lock_guard lock(mutex_);
     samples = samples_;
   }
   for (std::size_t i = 0; i + 1 < order.size(); ++i)
-    if (const auto motion = motion_between(samples, timestamps[order[i]], timestamps[order[i + 1]], *estimates))
+    if (const auto motion = motion_between(samples, timestamps[order[i]], timestamps[order[i + 1]], estimates))
       links.push_back({order[i], order[i + 1], *motion});
   return links;
 }
@@ -175,20 +186,18 @@ std::vector<double> linkable_stamps(const Map& map, std::span<const KeyFrameId> 
 }
 
 std::vector<std::uint8_t> add_inertial_factors(BundleProblem& problem, std::span<const InertialHistory::Link> links,
-                                               const InertialHistory& history) {
+                                               const MapInertia& estimates) {
   std::vector<std::uint8_t> is_linked(problem.poses.size(), 0);
-  const std::optional<MapInertia> estimates = history.estimates();
-  if (!estimates) return is_linked;
   BundleFactors& factors = problem.factors;
   // A pose by the nominal calibration lacks the rotation of the mounting.
-  factors.T_body_camera = Eigen::Isometry3d(estimates->mounting.transpose()) * estimates->T_body_camera;
-  factors.gravity = estimates->gravity;
-  factors.scale = estimates->scale;
+  factors.T_body_camera = Eigen::Isometry3d(estimates.mounting.transpose()) * estimates.T_body_camera;
+  factors.gravity = estimates.gravity;
+  factors.scale = estimates.scale;
   std::vector<std::uint32_t> motion_of(problem.poses.size(), FactorEvaluation::none);
   const auto motion = [&](std::size_t pose, const Eigen::Vector3d& velocity) {
     if (motion_of[pose] == FactorEvaluation::none) {
       motion_of[pose] = static_cast<std::uint32_t>(factors.motions.size());
-      factors.motions.push_back({static_cast<std::uint32_t>(pose), velocity, estimates->bias});
+      factors.motions.push_back({static_cast<std::uint32_t>(pose), velocity, estimates.bias});
     }
     is_linked[pose] = 1;
     return motion_of[pose];
@@ -202,7 +211,7 @@ std::vector<std::uint8_t> add_inertial_factors(BundleProblem& problem, std::span
     const std::uint32_t first = motion(link.first, begin), second = motion(link.second, end);
     factors.motions[first].velocity = begin;
     factors.inertial.push_back({first, second, link.measured});
-    if (begins_chain) factors.motion_priors.push_back(bias_prior(first, *estimates));
+    if (begins_chain) factors.motion_priors.push_back(bias_prior(first, estimates));
   }
   return is_linked;
 }

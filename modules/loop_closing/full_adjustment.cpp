@@ -194,7 +194,8 @@ void FullAdjustment::add_links() {
     link.first = pose_of_slot[linkable_[link.first].slot];
     link.second = pose_of_slot[linkable_[link.second].slot];
   }
-  is_linked_ = add_inertial_factors(problem_, links_, *inertia_);
+  if (const std::optional<MapInertia> estimates = inertia_->estimates())
+    is_linked_ = add_inertial_factors(problem_, links_, *estimates);
   links_ = {};
 }
 

@@ -162,6 +162,8 @@ struct Pipeline::State {
     const bool drifts = result.status == TrackingStatus::inertial || result.fallback == TrackingFallback::odometry;
     if (inertia && drifts) (result.is_keyframe ? drifting.keyframes : drifting.frames).push_back(result.timestamp);
   }
+  /// Estimates the unit of one camera's map by all inertial measurements.
+  void estimate_metres(const LockedMap& locked) HOLDFAST_REQUIRES(map);
   /// After the last adjustment of the map, which places keyframes. `before`: the trajectory before it.
   void smooth_frames(const Trajectory& before) HOLDFAST_EXCLUDES(map);
   void smooth_trajectory() HOLDFAST_EXCLUDES(map);
@@ -293,6 +295,15 @@ KeyFrameId Pipeline::State::insert_keyframe(const LockedMap& locked, const MapRe
   return first_keyframe;
 }
 
+void Pipeline::State::estimate_metres(const LockedMap& locked) {
+  if (!inertia || is_metric(locked.map())) return;
+  const std::optional<MapInertia> estimates =
+      tracker.estimate_metres(locked, drifting, *inertia, *parts.optimizer, is_interrupted);
+  if (!estimates) return;
+  locked->set_inertia(estimates);
+  inertia->set_estimates(estimates, inertia->submap());
+}
+
 void Pipeline::State::smooth_frames(const Trajectory& before) {
   if (!inertia) return;
   const std::vector<double> placed = flow.placed_keyframes();
@@ -382,6 +393,7 @@ void Pipeline::finish() {
     if (!s.parts.localise_only) locked->set_inertia(estimates);
     if (s.inertia) s.inertia->set_estimates(estimates, submap);
     s.flow.keep_submap(locked, submap);
+    s.estimate_metres(locked);
   }
   const Trajectory before = s.inertia ? trajectory() : Trajectory();
   s.flow.adjust_after_last_loop();

@@ -43,15 +43,6 @@ struct Chain {
   std::vector<InertialHistory::Link> links;  // between successive indices, from `begin` on
 };
 
-/// Of a prior, relative to measurements whose deviations are those of their noise.
-geometry::Matrix6d information_of(const Deviations& deviations) {
-  const Deviations values = (model_factor / deviations).square();
-  geometry::Vector6d information;
-  information.head<3>().setConstant(values[0]);
-  information.tail<3>().setConstant(values[1]);
-  return information.asDiagonal();
-}
-
 Deviations upper_medians(const std::vector<Deviations>& values) {
   Deviations medians;
   std::vector<double> column;
@@ -65,8 +56,15 @@ Deviations upper_medians(const std::vector<Deviations>& values) {
 
 class InertialSmoother {
  public:
-  InertialSmoother(const FrameHistory& history, Map& map, const DriftingPoses& drifting, const InertialHistory& inertia)
-      : map_(map), inertia_(inertia), trajectory_(with_missing(history.trajectory(map), drifting)) {
+  /// `deviation_factor`: of the deviations of the measurements. `scale_is_free`: the scale is a further unknown.
+  InertialSmoother(const FrameHistory& history, Map& map, const DriftingPoses& drifting, const InertialHistory& inertia,
+                   const MapInertia& estimates, double deviation_factor, bool scale_is_free)
+      : map_(map),
+        inertia_(inertia),
+        estimates_(estimates),
+        deviation_factor_(deviation_factor),
+        scale_is_free_(scale_is_free),
+        trajectory_(with_missing(history.trajectory(map), drifting)) {
     const std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
     const std::vector<double> stamps = linkable_stamps(map, keyframes, inertia);
     for (std::size_t i = 0; i < keyframes.size(); ++i)
@@ -81,7 +79,6 @@ class InertialSmoother {
       roles_.push_back(is_missing ? Role::missing : drifts ? Role::drifting : placed);
     }
     smoothed_.resize(trajectory_.size());
-    if (const std::optional<MapInertia> estimates = inertia.estimates()) unit_ = estimates->scale;
   }
 
   /// The chains of the trajectory. Long ones are cut beside tracked frames, so that the cost is linear.
@@ -124,7 +121,7 @@ class InertialSmoother {
       if (roles_[i] != Role::missing) {
         if (!keyframes_.contains(timestamp))
           history.replace(timestamp, smoothed_[i].value_or(T_world_camera.inverse()), map_);
-      } else if (smoothed_[i]) {
+      } else if (smoothed_[i] && !keyframes_.empty()) {
         Frame frame;
         frame.timestamp = timestamp;
         frame.T_camera_world = *smoothed_[i];
@@ -140,8 +137,8 @@ class InertialSmoother {
   static Trajectory with_missing(const Trajectory& trajectory, const DriftingPoses& drifting) {
     Trajectory complete = trajectory;
     for (const double timestamp : drifting.missing) {
-      const auto after = std::find_if(trajectory.begin(), trajectory.end(),
-                                      [&](const TimedPose& pose) { return pose.timestamp > timestamp; });
+      const auto after = std::upper_bound(trajectory.begin(), trajectory.end(), timestamp,
+                                          [](double time, const TimedPose& pose) { return time < pose.timestamp; });
       const bool has_before = after != trajectory.begin(), has_after = after != trajectory.end();
       constexpr double never = std::numeric_limits<double>::infinity();
       const double since = has_before ? timestamp - std::prev(after)->timestamp : never;
@@ -167,15 +164,23 @@ class InertialSmoother {
   bool is_predictable(std::size_t i, double tracked) const {
     return roles_[i] == Role::missing && std::abs(trajectory_[i].timestamp - tracked) <= longest_prediction;
   }
+  /// Of a prior, relative to measurements whose deviations are those of their noise.
+  geometry::Matrix6d information_of(const Deviations& deviations) const {
+    const Deviations values = (deviation_factor_ / deviations).square();
+    geometry::Vector6d information;
+    information.head<3>().setConstant(values[0]);
+    information.tail<3>().setConstant(values[1]);
+    return information.asDiagonal();
+  }
   /// In the unit of the map.
-  Deviations first_deviations_of_map() const { return {first_deviations[0] / unit_, first_deviations[1]}; }
+  Deviations first_deviations_of_map() const { return {first_deviations[0] / estimates_.scale, first_deviations[1]}; }
 
   /// Adds the chains of the frames `first` to `last` - 1, with their overlap.
   void add_chains(std::size_t first, std::size_t last, std::vector<Chain>& chains) const {
     const std::size_t begin = first - std::min(first, overlap), end = std::min(last + overlap, trajectory_.size());
     std::vector<double> timestamps;
     for (std::size_t i = begin; i < end; ++i) timestamps.push_back(trajectory_[i].timestamp);
-    std::vector<InertialHistory::Link> links = inertia_.links(timestamps);
+    std::vector<InertialHistory::Link> links = inertia_.links(timestamps, estimates_);
     for (std::size_t from = 0, to = 0; from < links.size(); from = to) {
       for (to = from + 1; to < links.size() && links[to].first == links[to - 1].second;) ++to;
       Chain chain{begin + links[from].first, begin + links[to - 1].second + 1, 0, 0, {}};
@@ -210,9 +215,10 @@ class InertialSmoother {
       problem.factors.pose_priors.push_back({pose, T_camera_world, information_of(share * first_deviations_of_map())});
     }
     turn_missing(chain, problem);
-    add_inertial_factors(problem, chain.links, inertia_);
+    add_inertial_factors(problem, chain.links, estimates_);
+    problem.factors.scale_fixed = !scale_is_free_;
     for (BundleFactors::MotionPrior& prior : problem.factors.motion_priors)
-      prior.information *= model_factor * model_factor;
+      prior.information *= deviation_factor_ * deviation_factor_;
     problem.robust_iterations = 0, problem.final_iterations = 50;  // no observation is an outlier
     problem.function_tolerance = 1e-6;
     return problem;
@@ -220,8 +226,7 @@ class InertialSmoother {
 
   /// Turns frames without a pose as the gyroscope says: a solution begins there, and half a turn could end elsewhere.
   void turn_missing(const Chain& chain, BundleProblem& problem) const {
-    const MapInertia estimates = inertia_.estimates().value_or(MapInertia());
-    const Eigen::Matrix3d R_body_camera = estimates.mounting.transpose() * estimates.T_body_camera.linear();
+    const Eigen::Matrix3d R_body_camera = estimates_.mounting.transpose() * estimates_.T_body_camera.linear();
     const auto turn = [&](std::size_t from, std::size_t to, const Eigen::Matrix3d& R_from_to) {
       if (roles_[chain.begin + to] != Role::missing) return;
       const Eigen::Isometry3d T_world_camera = problem.poses[to].T_camera_world.inverse();
@@ -307,12 +312,36 @@ class InertialSmoother {
 
   Map& map_;
   const InertialHistory& inertia_;
+  const MapInertia estimates_;
+  const double deviation_factor_;
+  const bool scale_is_free_;
   const Trajectory trajectory_;                             // before
   std::vector<std::optional<Eigen::Isometry3d>> smoothed_;  // T_camera_world, as far as chains were solved
   std::vector<Role> roles_;                                 // by frame of the trajectory
   std::map<double, KeyFrameId> keyframes_;                  // by time stamp
-  double unit_ = 1.0;                                       // of the map [m]
 };
+
+/// Relative standard deviation of the scale of a solution: by the increase of the cost where another scale is fixed,
+/// times the root of the mean squared residual if that is larger than 1.
+double deviation_of_scale(const BundleProblem& solution, Optimizer& optimizer, const std::atomic<bool>& stop) {
+  constexpr double step = 0.01;
+  const auto cost_at = [&](double scale) {
+    BundleProblem problem = solution;
+    problem.factors.scale = scale, problem.factors.scale_fixed = true;
+    return optimizer.optimize_bundle(problem, stop).final_cost;
+  };
+  const double cost = cost_at(solution.factors.scale);
+  const double increase =
+      0.5 * (cost_at(solution.factors.scale * std::exp(step)) + cost_at(solution.factors.scale * std::exp(-step))) -
+      cost;
+  const BundleFactors& factors = solution.factors;
+  const double residuals = 6.0 * static_cast<double>(factors.pose_priors.size() + factors.motion_priors.size()) +
+                           15.0 * static_cast<double>(factors.inertial.size());
+  const double unknowns =
+      6.0 * static_cast<double>(solution.poses.size()) + 9.0 * static_cast<double>(factors.motions.size()) + 3.0;
+  const double mean_chi_square = 2.0 * cost / std::max(1.0, residuals - unknowns);
+  return step / std::sqrt(2.0 * increase) * std::sqrt(std::max(1.0, mean_chi_square));
+}
 
 }  // namespace
 
@@ -341,11 +370,36 @@ void follow_keyframes(FrameHistory& history, const Map& map, const Trajectory& b
   }
 }
 
+std::optional<ScaleEstimate> estimate_scale(const FrameHistory& history, Map& map, const DriftingPoses& drifting,
+                                            const InertialHistory& inertia, const MapInertia& estimates,
+                                            Optimizer& optimizer, const std::atomic<bool>& stop) {
+  const InertialSmoother smoother(history, map, drifting, inertia, estimates, 1.0, true);
+  ScaleEstimate result;
+  double information = 0.0, logarithm = 0.0, largest_weight = 0.0;
+  for (const Chain& chain : smoother.find_chains()) {
+    const std::optional<BundleProblem> solution = smoother.solve(chain, optimizer, stop);
+    if (stop) return std::nullopt;
+    if (!solution) continue;
+    const double deviation = deviation_of_scale(*solution, optimizer, stop);
+    if (stop) return std::nullopt;
+    if (!(deviation > 0.0) || !std::isfinite(deviation)) continue;
+    const double weight = 1.0 / (deviation * deviation);
+    if (weight > largest_weight) largest_weight = weight, result.gravity = solution->factors.gravity;
+    information += weight;
+    logarithm += weight * std::log(solution->factors.scale);
+  }
+  if (!(information > 0.0)) return std::nullopt;
+  result.scale = std::exp(logarithm / information);
+  result.deviation = 1.0 / std::sqrt(information);
+  return result;
+}
+
 InertialSmoothing smooth_by_inertia(FrameHistory& history, Map& map, const DriftingPoses& drifting,
                                     const InertialHistory& inertia, Optimizer& optimizer,
                                     const std::atomic<bool>& stop) {
-  if (map.keyframes().size() == 0 || history.main_submap(map) != inertia.submap()) return {};
-  InertialSmoother smoother(history, map, drifting, inertia);
+  const std::optional<MapInertia> estimates = inertia.estimates();
+  if (!estimates || map.keyframes().size() == 0 || history.main_submap(map) != inertia.submap()) return {};
+  InertialSmoother smoother(history, map, drifting, inertia, *estimates, model_factor, false);
   for (const Chain& chain : smoother.find_chains()) {
     const std::optional<BundleProblem> solution = smoother.solve(chain, optimizer, stop);
     if (stop) break;

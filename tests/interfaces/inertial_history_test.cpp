@@ -156,7 +156,7 @@ TEST_F(InertialHistoryTest, AddsAChainWithOnePriorAndVelocitiesThatFollowFromThe
     T_world_camera.translation() = Eigen::Vector3d(0.2 * i, 0.0, 0.0);  // 0.4 m/s
     problem.poses.push_back({T_world_camera.inverse(), i < 2});
   }
-  const std::vector<std::uint8_t> linked = add_inertial_factors(problem, links({1.0, 1.5, 2.0, 2.5}), history);
+  const std::vector<std::uint8_t> linked = add_inertial_factors(problem, links({1.0, 1.5, 2.0, 2.5}), estimates());
   EXPECT_EQ(linked, (std::vector<std::uint8_t>{0, 1, 1, 1})) << "nothing is free between the first two";
   ASSERT_EQ(problem.factors.motions.size(), 3U);
   EXPECT_EQ(problem.factors.inertial.size(), 2U);
@@ -176,7 +176,7 @@ TEST_F(InertialHistoryTest, BiasPriorsAreAsWideAsTheEstimatesAtLeast) {
     history.set_estimates(known, 0);
     BundleProblem problem;
     problem.poses.assign(2, {Eigen::Isometry3d::Identity(), false});
-    add_inertial_factors(problem, links({0.5, 2.0}), history);
+    add_inertial_factors(problem, links({0.5, 2.0}), *history.estimates());
     ASSERT_EQ(problem.factors.motion_priors.size(), 1U);
     const auto& information = problem.factors.motion_priors.front().information;
     EXPECT_NEAR(1.0 / std::sqrt(information(3, 3)), std::max(deviation, 0.003), 1e-9);

@@ -240,9 +240,9 @@ TEST(SlowCameraWithInertia, KeepsItsPoseWithoutAView) {
 /// A simulated camera with an IMU, without depth.
 class OneCameraSource final : public FrameSource {
  public:
-  explicit OneCameraSource(int seconds)
+  OneCameraSource(int seconds, const std::string& path)
       : simulator_(simulation::read_scene(
-                       {}, {"camera.path=xyz", "seed=3", "frame_rate=20", "duration=" + std::to_string(seconds)}),
+                       {}, {"camera.path=" + path, "seed=3", "frame_rate=20", "duration=" + std::to_string(seconds)}),
                    *find_camera("tum_fr3")),
         sensor_(simulator_.path(), *find_imu("bmi055"), 1) {}
   SourceDescription describe() const override {
@@ -272,8 +272,8 @@ class OneCameraSource final : public FrameSource {
 
 /// One camera with an IMU for some seconds.
 struct OneCameraWithInertia : ::testing::Test {
-  void run(int seconds) {
-    auto source = std::make_unique<OneCameraSource>(seconds);
+  void run(int seconds, const std::string& path = "xyz") {
+    auto source = std::make_unique<OneCameraSource>(seconds, path);
     const Camera camera = *source->describe().camera;
     built =
         std::make_unique<BuiltPipeline>(BuiltPipeline{std::move(source), builder(camera, Sensor::mono, 1000).build()});
@@ -313,6 +313,15 @@ TEST_F(OneCameraWithInertia, EndsInMetres) {
   EXPECT_EQ(json["is_metric"], true);
   EXPECT_EQ(json["evaluation"]["alignment"]["kind"], "se3");
   EXPECT_NEAR(json["evaluation"]["ate_m"]["rmse"].get<double>(), error, 1e-6);
+}
+
+/// Five seconds on this path do not determine the scale, so that tracking is visual; all of them do.
+TEST_F(OneCameraWithInertia, EndsInMetresWhereTrackingFoundNoScale) {
+  ASSERT_NO_FATAL_FAILURE(run(12, "halfsphere"));
+  EXPECT_FALSE(says_that_scale_is_missing());
+  EvaluationOptions with_scale;
+  with_scale.alignment = AlignmentKind::sim3;
+  EXPECT_NEAR(evaluate(truth, built->pipeline.trajectory(), with_scale).alignment.scale, 1.0, 0.01);
 }
 
 TEST_F(OneCameraWithInertia, WithoutAStartItsOwnUnitIsNamed) {

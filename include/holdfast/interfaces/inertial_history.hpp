@@ -38,6 +38,8 @@ class InertialHistory {
   /// Forgets all estimates: the map was cleared, and begins again with submap 0 and the first keyframe.
   void forget_map();
   std::optional<MapInertia> estimates() const;
+  /// The nominal calibration, with which nothing else is known.
+  MapInertia nominal() const;
   /// Submap whose keyframes the measurements link.
   std::uint32_t submap() const;
   std::uint64_t first_sequence() const;
@@ -51,6 +53,8 @@ class InertialHistory {
   /// link over a gap or a saturated measurement, or over more than 5 s, without estimates, outside what is kept, and
   /// where a single measurement leaves position and velocity without a covariance of full rank.
   std::vector<Link> links(std::span<const double> timestamps) const;
+  /// The same with other estimates of biases and time offset.
+  std::vector<Link> links(std::span<const double> timestamps, const MapInertia& estimates) const;
 
  private:
   std::optional<geometry::Preintegration> motion_between(std::span<const ImuSample> samples, double begin, double end,
@@ -69,10 +73,10 @@ std::vector<double> linkable_stamps(const Map& map, std::span<const KeyFrameId> 
                                     const InertialHistory& history);
 
 /// Adds motions and inertial factors between the linked poses to a bundle problem, with biases, gravity, scale (fixed)
-/// and calibration as tracking estimates them, and velocities that follow from the poses (Campos et al. 2021, section
+/// and calibration as estimated, and velocities that follow from the poses (Campos et al. 2021, section
 /// VI-B: the graph of visual-inertial adjustments). Biases have a prior where a chain of factors begins. `links`: of
 /// InertialHistory::links(), between indices of poses. Returns, for each pose, whether it belongs to a factor.
 std::vector<std::uint8_t> add_inertial_factors(BundleProblem& problem, std::span<const InertialHistory::Link> links,
-                                               const InertialHistory& history);
+                                               const MapInertia& estimates);
 
 }  // namespace holdfast

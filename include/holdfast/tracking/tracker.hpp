@@ -20,6 +20,7 @@
 #include "holdfast/tracking/loss_recovery.hpp"
 #include "holdfast/tracking/map_request.hpp"
 #include "holdfast/tracking/map_start.hpp"
+#include "holdfast/tracking/metric_scale.hpp"
 #include "holdfast/tracking/pose_covariance.hpp"
 #include "holdfast/tracking/tracker_state.hpp"
 #include "holdfast/tracking/tracking_context.hpp"
@@ -71,6 +72,13 @@ class Tracker {
   /// Moves frames as the last adjustment moved the keyframes before and after them (holdfast::follow_keyframes()).
   void follow_keyframes(const MapAccess& map, const Trajectory& before) {
     holdfast::follow_keyframes(context_.history, map.map(), before);
+  }
+  /// Estimates of all inertial measurements, for one camera at the end of a run (metric_scale.hpp).
+  std::optional<MapInertia> estimate_metres(const MapAccess& map, const DriftingPoses& drifting,
+                                            const InertialHistory& inertia, Optimizer& optimizer,
+                                            const std::atomic<bool>& stop) const {
+    return holdfast::estimate_metres(context_.history, map.map(), drifting, inertia, inertia.estimates(), optimizer,
+                                     stop);
   }
   /// Estimates the poses between keyframes again by the map as it is now, at the end of a run.
   void smooth_by_inertia(const MapAccess& map, const DriftingPoses& drifting, const InertialHistory& inertia,
