@@ -251,24 +251,32 @@ void solves_a_graph(const Maker& maker) {
   }
 }
 
-/// The edges between neighbours are exact, the one that closes the circle has a tilt.
+/// Nodes begin with wrong positions and yaws. Edges are exact, or the one that closes the circle has a tilt.
 void keeps_the_vertical(const Maker& maker) {
   const auto optimizer = maker.make<Optimizer>();
   if (!optimizer->keeps_vertical()) return;
   const Eigen::Vector3d down = Eigen::Vector3d(0.2, 9.7, -0.4);
-  KnownGraph known = known_graph();
-  PoseGraphProblem& problem = known.problem;
-  for (std::size_t i = 1; i < problem.nodes.size(); ++i)
-    problem.nodes[i].T_camera_world = Eigen::Translation3d(0.1, 0.05, -0.1) * known.poses[i];
-  problem.edges.back().T_to_from = problem.edges.back().T_to_from * Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitX());
-  problem.vertical = down;
-  const GraphSummary summary = optimizer->optimize_pose_graph(problem);
-  ASSERT_TRUE(summary.usable) << "a fixed node, and a vertical";
-  EXPECT_LT(summary.final_cost, 0.9 * summary.initial_cost) << "positions were not adjusted";
-  for (std::size_t i = 0; i < problem.nodes.size(); ++i) {
-    const Eigen::Matrix3d R = problem.nodes[i].T_camera_world.linear();
-    EXPECT_LT((R * down - known.poses[i].linear() * down).norm(), 1e-9) << "node " << i << " tilted";
-    EXPECT_LT((R - known.poses[i].linear()).norm(), 0.2) << "yaw of node " << i;
+  for (const bool has_scale : {false, true}) {
+    for (const bool has_tilt : {false, true}) {
+      KnownGraph known = known_graph();
+      PoseGraphProblem& problem = known.problem;
+      for (std::size_t i = 1; i < problem.nodes.size(); ++i)
+        problem.nodes[i].T_camera_world =
+            Eigen::Translation3d(0.1, 0.05, -0.1) * known.poses[i] * Eigen::AngleAxisd(0.15, down.normalized());
+      if (has_tilt)
+        problem.edges.back().T_to_from =
+            problem.edges.back().T_to_from * Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitX());
+      problem.vertical = down;
+      const GraphSummary summary =
+          has_scale ? optimizer->optimize_similarity_graph(problem) : optimizer->optimize_pose_graph(problem);
+      ASSERT_TRUE(summary.usable) << "a fixed node, and a vertical";
+      EXPECT_LT(summary.final_cost, 0.9 * summary.initial_cost) << "positions were not adjusted";
+      for (std::size_t i = 0; i < problem.nodes.size(); ++i) {
+        const Eigen::Matrix3d R = problem.nodes[i].T_camera_world.linear();
+        EXPECT_LT((R * down - known.poses[i].linear() * down).norm(), 1e-9) << "node " << i << " tilted";
+        EXPECT_LT((R - known.poses[i].linear()).norm(), has_tilt ? 0.2 : near_truth) << "yaw of node " << i;
+      }
+    }
   }
 }
 

@@ -14,6 +14,7 @@ void make_metric(Map& map) {
     KeyFrame& keyframe = map.keyframe(id);
     keyframe.frame.T_camera_world.translation() *= inertia.scale;
     keyframe.scale *= inertia.scale;
+    if (keyframe.motion) keyframe.motion->velocity *= inertia.scale;
   }
   for (const MapPointId id : map.points().ids()) {
     MapPoint& point = map.point(id);

@@ -349,8 +349,12 @@ void FullAdjustment::move_map() {
 void FullAdjustment::keep_motions(std::span<const Eigen::Isometry3d> poses) {
   for (const BundleFactors::Motion& motion : problem_.factors.motions) {
     KeyFrame* keyframe = map_.find_keyframe(keyframes_[motion.pose]);
-    if (keyframe != nullptr && keyframe->frame.T_camera_world.matrix() == poses[motion.pose].matrix())
-      keyframe->motion = KeyFrameMotion{motion.velocity, motion.bias};
+    if (keyframe == nullptr || keyframe->frame.T_camera_world.matrix() != poses[motion.pose].matrix()) continue;
+    const BundleFactors& factors = problem_.factors;
+    const KeyFrameMotion found{motion.velocity / factors.scale, motion.bias};
+    if (!found.is_possible()) continue;
+    keyframe->motion = found;
+    keyframe->vertical = (keyframe->frame.T_camera_world.linear() * factors.gravity).normalized();
   }
 }
 

@@ -127,6 +127,7 @@ void LoopCorrection::bring_pieces_together() {
 void LoopCorrection::make_upright() {
   if (!settings_.keep_vertical || !optimizer_.keeps_vertical()) return;
   const std::uint32_t older = std::min(keyframe_submap_, place_submap_);
+  if (!has_verticals(older) || !has_verticals(std::max(keyframe_submap_, place_submap_))) return;
   for (std::size_t i = 0; i < nodes_.size() && !graph_.vertical; ++i) {
     const KeyFrame& keyframe = map_.keyframe(nodes_[i]);
     if (keyframe.submap == older && keyframe.vertical)
@@ -135,6 +136,19 @@ void LoopCorrection::make_upright() {
   if (!graph_.vertical) return;
   turn_upright(older);
   if (keyframe_submap_ != place_submap_) turn_upright(std::max(keyframe_submap_, place_submap_));
+}
+
+/// Whether most keyframes of the submap know their vertical: others could not be turned upright by the graph.
+bool LoopCorrection::has_verticals(std::uint32_t submap) const {
+  constexpr double least_share = 0.8;
+  std::size_t count = 0, known = 0;
+  for (const KeyFrameId id : nodes_) {
+    const KeyFrame& keyframe = map_.keyframe(id);
+    if (keyframe.submap != submap) continue;
+    ++count;
+    known += keyframe.vertical ? 1 : 0;
+  }
+  return static_cast<double>(known) >= least_share * static_cast<double>(count);
 }
 
 /// Keyframes without a vertical of their own turn as the one before them, or as the first that has one.

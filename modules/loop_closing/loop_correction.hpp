@@ -47,6 +47,7 @@ class LoopCorrection {
   /// With inertial measurements, four degrees of freedom for the solver: keyframes get the roll and pitch that these
   /// say, in the world of the older submap.
   void make_upright();
+  bool has_verticals(std::uint32_t submap) const;
   void turn_upright(std::uint32_t submap);
   void move_map();
   void fuse_matches();

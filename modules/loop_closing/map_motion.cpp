@@ -53,8 +53,8 @@ int MapMotion::move_keyframes(Map& map) const {
   for (const Pose& pose : poses_) {
     KeyFrame& keyframe = map.keyframe(pose.keyframe);
     if (keyframe.motion)
-      keyframe.motion->velocity = pose.T_camera_world.linear().transpose() *
-                                  (keyframe.frame.T_camera_world.linear() * keyframe.motion->velocity);
+      keyframe.motion->velocity = pose.scale * (pose.T_camera_world.linear().transpose() *
+                                                (keyframe.frame.T_camera_world.linear() * keyframe.motion->velocity));
     keyframe.frame.T_camera_world = pose.T_camera_world;
     keyframe.scale *= pose.scale;
     carried += pose.carried ? 1 : 0;

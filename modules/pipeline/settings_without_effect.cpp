@@ -19,6 +19,13 @@ void PipelineBuilder::check_effects() {
         origin_.place,
         "'surface.classes' has no effect without a segmenter, which gives pixels their classes; set 'segmenter', or "
         "remove 'surface.classes'");
+  if (parts_.loop_closing.keep_vertical && !(parts_.tracking.inertia && parts_.imu))
+    suspect(origin_.place,
+            "'loop_closing.keep_vertical' has no effect without inertial measurements; set tracking.inertia, with a "
+            "source that has an IMU, or remove it");
+  else if (parts_.loop_closing.keep_vertical && !parts_.optimizer->keeps_vertical())
+    suspect(optimizer_->place, "'loop_closing.keep_vertical' has no effect with the optimizer '" + optimizer_->name +
+                                   "', whose pose graphs have six degrees of freedom; choose 'ceres' or 'schur'");
   bool uses_masks = false;
   for (std::size_t i = 0; i < filters_.size(); ++i) {
     const Needs needs = parts_.filters[i].second->needs();

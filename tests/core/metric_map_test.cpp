@@ -38,6 +38,7 @@ TEST_F(MetricMapTest, AllLengthsAreScaledTogether) {
   const MapPointId id = map.points().ids().front();
   const MapPoint point = map.point(id);
   const KeyFrameId viewer = point.reference_keyframe;
+  map.keyframe(viewer).motion = KeyFrameMotion{{1.0, 2.0, 3.0}, {}};
   const Eigen::Vector3d in_camera = map.pose_of(viewer) * point.position;
   const Eigen::Isometry3d removed = map.pose_of(keyframes[3]);
   const std::uint64_t version = map.version();
@@ -49,6 +50,7 @@ TEST_F(MetricMapTest, AllLengthsAreScaledTogether) {
   for (const KeyFrameId keyframe : keyframes) EXPECT_DOUBLE_EQ(map.scale_of(keyframe), scale);
   EXPECT_LT((map.pose_of(keyframes[3]).translation() - scale * removed.translation()).norm(), 1e-9);
   EXPECT_DOUBLE_EQ(map.inertia()->scale, 1.0);
+  EXPECT_DOUBLE_EQ(map.keyframe(viewer).motion->velocity.y(), 2.0 * scale);
   test::expect_consistent(map);
 }
 

@@ -121,6 +121,8 @@ TEST_F(FullAdjustmentTest, KeepsVelocitiesOfTheKeyframesThatItLinks) {
     const Eigen::Isometry3d truth = test::RingWorld::pose_at(0.1 * static_cast<double>(i));
     const Eigen::Vector3d expected = Eigen::Vector3d(0.0, 0.1, 0.0).cross(truth.translation());
     EXPECT_LT((map.keyframe(keyframes[i]).motion->velocity - expected).norm(), 0.01) << i;
+    ASSERT_TRUE(map.keyframe(keyframes[i]).vertical) << i;
+    EXPECT_GT(map.keyframe(keyframes[i]).vertical->dot(truth.linear() * Eigen::Vector3d::UnitY()), std::cos(0.01)) << i;
   }
 }
 

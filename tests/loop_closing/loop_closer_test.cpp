@@ -216,6 +216,23 @@ TEST_F(LoopCloserTest, InertialMeasurementsKeepKeyframesUpright) {
   }
 }
 
+TEST_F(LoopCloserTest, WithoutMostVerticalsTheGraphHasSixDegreesOfFreedom) {
+  Eigen::Isometry3d mistake(Eigen::Translation3d(0.3, 0.0, 0.2));
+  mistake.linear() = Eigen::AngleAxisd(0.07, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  settings.keep_vertical = true;
+  make_closer();
+  closer->use_inertia();
+  test::RingWorld world(0.0);
+  world.add_wall(0, round_trip, 2500);
+  knows_vertical = true;
+  ASSERT_FALSE(walk(world, 0, 0.5 * round_trip, 30));
+  knows_vertical = false;  // as in a map that goes on without an IMU
+  world.hide_view(mistake, 2.0);
+  ASSERT_TRUE(walk(world, 0.5 * round_trip, 1.2 * round_trip, 42));
+  EXPECT_LT(largest_tilt(), 0.06) << "spread over all";
+  EXPECT_GT(largest_tilt(), 0.01);
+}
+
 TEST_F(LoopCloserTest, SubmapsAreJoinedUpright) {
   test::RingWorld world(0.0);
   world.add_wall(0, round_trip, 2500);

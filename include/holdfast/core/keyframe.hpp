@@ -32,9 +32,9 @@ struct KeyFrame {
   double scale = 1.0;
   std::vector<KeyFrameId> loop_edges;  ///< other ends of closed loops; a keyframe with one is never culled
   /// Direction of gravity in the frame of the camera, a unit vector, as tracking knew it by inertial measurements when
-  /// the keyframe was made.
+  /// the keyframe was made, or as the last adjustment found it that linked the keyframe by them.
   std::optional<Eigen::Vector3d> vertical;
-  std::optional<KeyFrameMotion> motion;  ///< only if an adjustment with inertial measurements placed the keyframe
+  std::optional<KeyFrameMotion> motion;  ///< of the last adjustment that linked the keyframe by inertial measurements
 };
 
 }  // namespace holdfast

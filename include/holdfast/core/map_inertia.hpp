@@ -35,9 +35,13 @@ struct MapInertia {
 
 /// State of the IMU at a keyframe, as the last adjustment with inertial measurements found it.
 struct KeyFrameMotion {
-  /// Of the IMU in the world frame [m/s], in metres whatever the unit of the map.
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the IMU in the world frame, in the map's unit per second
   ImuBias bias;
+
+  /// Whether the numbers are finite and can be those of an IMU: map files refuse others.
+  bool is_possible() const {
+    return velocity.norm() <= 1e9 && bias.gyroscope.norm() <= 100.0 && bias.accelerometer.norm() <= 100.0;
+  }
 };
 
 }  // namespace holdfast

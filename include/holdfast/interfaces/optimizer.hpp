@@ -121,7 +121,7 @@ struct PoseGraphProblem {
   };
   std::vector<Node> nodes;
   std::vector<Edge> edges;
-  /// Direction of gravity in the world frame, of any length. With it, nodes have four degrees of freedom, position and
+  /// Direction of gravity in the world frame, of any length but 0, with which nothing is usable. With it, nodes have four degrees of freedom, position and
   /// yaw about it, and keep roll and pitch (Qin, Li and Shen, "VINS-Mono", T-RO 2018, section VIII; Campos et al.,
   /// "ORB-SLAM3", T-RO 2021, section VII); without it, six. Only for optimizers that keep it (keeps_vertical()).
   std::optional<Eigen::Vector3d> vertical;
@@ -153,7 +153,7 @@ class Optimizer : public Module {
   /// `stop` is read between iterations.
   virtual BundleSummary optimize_bundle(BundleProblem& problem, const std::atomic<bool>& stop) = 0;
   virtual GraphSummary optimize_pose_graph(PoseGraphProblem& problem) = 0;
-  /// Whether optimize_pose_graph() obeys PoseGraphProblem::vertical; others ignore it.
+  /// Whether both functions for pose graphs obey PoseGraphProblem::vertical; others ignore it.
   virtual bool keeps_vertical() const { return false; }
   /// Pose graph over Sim(3) for monocular maps with scale drift (Strasdat, Montiel and Davison, "Scale drift-aware
   /// large scale monocular SLAM", RSS 2010). The default optimizes the scales first (a linear problem in their
