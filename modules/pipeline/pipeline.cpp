@@ -22,6 +22,7 @@
 #include "holdfast/moving_world/moving_world.hpp"
 #include "holdfast/pipeline/health_monitor.hpp"
 #include "holdfast/tracking/image_depth.hpp"
+#include "holdfast/tracking/metric_scale.hpp"
 #include "holdfast/tracking/no_depth.hpp"
 #include "holdfast/tracking/pair_depth.hpp"
 #include "holdfast/tracking/tracker.hpp"
@@ -160,10 +161,10 @@ struct Pipeline::State {
   /// Notes a frame whose pose drifts: odometry does so too, and follows people where hardly anything else is seen.
   void note_bridge(const FrameResult& result) {
     const bool drifts = result.status == TrackingStatus::inertial || result.fallback == TrackingFallback::odometry;
-    if (inertia && drifts) (result.is_keyframe ? drifting.keyframes : drifting.frames).push_back(result.timestamp);
+    if (inertia && drifts) (result.is_keyframe ? unplaced.keyframes : unplaced.frames).push_back(result.timestamp);
   }
-  /// Estimates the unit of one camera's map by all inertial measurements.
-  void estimate_metres(const LockedMap& locked) HOLDFAST_REQUIRES(map);
+  /// Estimates the unit of one camera's map by all inertial measurements. The map can be read meanwhile.
+  void estimate_metres() HOLDFAST_EXCLUDES(map);
   /// After the last adjustment of the map, which places keyframes. `before`: the trajectory before it.
   void smooth_frames(const Trajectory& before) HOLDFAST_EXCLUDES(map);
   void smooth_trajectory() HOLDFAST_EXCLUDES(map);
@@ -206,7 +207,7 @@ struct Pipeline::State {
   Stopwatch since_start;                   ///< the clock of health
   std::vector<ImuSample> imu;              ///< the first minutes, for warnings
   std::optional<InertialHistory> inertia;  ///< for adjustments
-  DriftingPoses drifting;                  ///< for the smoothing at the end
+  UnplacedFrames unplaced;                 ///< for the smoothing at the end
   std::vector<double> stamps;              ///< of all frames, for the same [s]
   std::atomic<bool> is_interrupted{false};
   KeyframeFlow flow;  // last: its threads end before the others go
@@ -295,11 +296,22 @@ KeyFrameId Pipeline::State::insert_keyframe(const LockedMap& locked, const MapRe
   return first_keyframe;
 }
 
-void Pipeline::State::estimate_metres(const LockedMap& locked) {
-  if (!inertia || is_metric(locked.map())) return;
-  const std::optional<MapInertia> estimates =
-      tracker.estimate_metres(locked, drifting, *inertia, *parts.optimizer, is_interrupted);
+void Pipeline::State::estimate_metres() {
+  if (!inertia) return;
+  RunPath path;
+  {
+    const LockedMap locked(map, LockPriority::background);
+    if (is_metric(locked.map())) return;
+    path = tracker.path_of_run(locked, *inertia);
+  }
+  std::optional<MapInertia> estimates;
+  flow.in_background([&](StageTimes& times) {
+    const StageTimer timer(times, "metric scale");
+    estimates =
+        holdfast::estimate_metres(path, unplaced, *inertia, inertia->estimates(), *parts.optimizer, is_interrupted);
+  });
   if (!estimates) return;
+  const LockedMap locked(map, LockPriority::background);
   locked->set_inertia(estimates);
   inertia->set_estimates(estimates, inertia->submap());
 }
@@ -307,17 +319,17 @@ void Pipeline::State::estimate_metres(const LockedMap& locked) {
 void Pipeline::State::smooth_frames(const Trajectory& before) {
   if (!inertia) return;
   const std::vector<double> placed = flow.placed_keyframes();
-  std::erase_if(drifting.keyframes,
+  std::erase_if(unplaced.keyframes,
                 [&](double stamp) { return std::find(placed.begin(), placed.end(), stamp) != placed.end(); });
   const LockedMap locked(map, LockPriority::background);
   const std::optional<MapInertia> adjusted = inertia->estimates();
   if (adjusted && locked->inertia()) locked->set_inertia(adjusted);  // belongs to the poses, interrupted or not
   if (is_interrupted) return;
   if (!placed.empty()) tracker.follow_keyframes(locked, before);
-  drifting.longest_gap = parts.tracking.inertial_time;
+  unplaced.longest_gap = parts.tracking.inertial_time;
   for (const double stamp : stamps)
-    if (!tracker.pose_at(locked, stamp)) drifting.missing.push_back(stamp);
-  tracker.smooth_by_inertia(locked, drifting, *inertia, *parts.optimizer, is_interrupted);
+    if (!tracker.pose_at(locked, stamp)) unplaced.missing.push_back(stamp);
+  tracker.smooth_by_inertia(locked, unplaced, *inertia, *parts.optimizer, is_interrupted);
 }
 
 void Pipeline::State::smooth_trajectory() {
@@ -393,8 +405,8 @@ void Pipeline::finish() {
     if (!s.parts.localise_only) locked->set_inertia(estimates);
     if (s.inertia) s.inertia->set_estimates(estimates, submap);
     s.flow.keep_submap(locked, submap);
-    s.estimate_metres(locked);
   }
+  s.estimate_metres();
   const Trajectory before = s.inertia ? trajectory() : Trajectory();
   s.flow.adjust_after_last_loop();
   s.smooth_frames(before);

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -31,7 +32,7 @@ constexpr double model_factor = 3.0;
 constexpr std::size_t most_frames = 900, fewest_frames = 3;  // of a chain
 /// Frames on both sides of such a chain that are solved with it and not adopted, so that chains meet without a step.
 constexpr std::size_t overlap = 60;
-/// How far from the only tracked frame beside them frames without a pose get one [s].
+/// How far from tracked frames on one side alone frames without a pose get one [s].
 constexpr double longest_prediction = 0.5;
 
 enum class Role : std::uint8_t { tracked, drifting, missing, keyframe };
@@ -57,26 +58,29 @@ Deviations upper_medians(const std::vector<Deviations>& values) {
 class InertialSmoother {
  public:
   /// `deviation_factor`: of the deviations of the measurements. `scale_is_free`: the scale is a further unknown.
-  InertialSmoother(const FrameHistory& history, Map& map, const DriftingPoses& drifting, const InertialHistory& inertia,
+  InertialSmoother(const RunPath& path, const UnplacedFrames& unplaced, const InertialHistory& inertia,
                    const MapInertia& estimates, double deviation_factor, bool scale_is_free)
-      : map_(map),
-        inertia_(inertia),
+      : inertia_(inertia),
         estimates_(estimates),
         deviation_factor_(deviation_factor),
         scale_is_free_(scale_is_free),
-        trajectory_(with_missing(history.trajectory(map), drifting)) {
-    const std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
-    const std::vector<double> stamps = linkable_stamps(map, keyframes, inertia);
-    for (std::size_t i = 0; i < keyframes.size(); ++i)
-      if (!std::isnan(stamps[i])) keyframes_[stamps[i]] = keyframes[i];
+        camera_(path.camera),
+        keyframes_(path.keyframes),
+        longest_prediction_(std::min(longest_prediction, unplaced.longest_gap)) {
     const auto contains = [](const std::vector<double>& sorted, double stamp) {
       return std::binary_search(sorted.begin(), sorted.end(), stamp);
     };
+    const auto drifts = [&](const TimedPose& pose) {
+      return contains(unplaced.frames, pose.timestamp) || contains(unplaced.keyframes, pose.timestamp);
+    };
+    Trajectory tracked = path.trajectory;
+    std::erase_if(tracked, drifts);
+    trajectory_ = path.trajectory;
+    if (!keyframes_.empty()) add_missing(unplaced, tracked);
     for (const TimedPose& pose : trajectory_) {
-      const bool drifts = contains(drifting.frames, pose.timestamp) || contains(drifting.keyframes, pose.timestamp);
       const Role placed = keyframes_.contains(pose.timestamp) ? Role::keyframe : Role::tracked;
-      const bool is_missing = contains(drifting.missing, pose.timestamp);
-      roles_.push_back(is_missing ? Role::missing : drifts ? Role::drifting : placed);
+      const bool is_missing = contains(unplaced.missing, pose.timestamp);
+      roles_.push_back(is_missing ? Role::missing : drifts(pose) ? Role::drifting : placed);
     }
     smoothed_.resize(trajectory_.size());
   }
@@ -104,15 +108,15 @@ class InertialSmoother {
   }
 
   /// Adopts the poses of a solution.
-  void take(const Chain& chain, const BundleProblem& solution) {
-    move_keyframes(chain, solution);
+  void take(const Chain& chain, const BundleProblem& solution, Map& map) {
+    move_keyframes(chain, solution, map);
     for (std::size_t i = chain.first; i < chain.last; ++i)
       if (roles_[i] != Role::keyframe) smoothed_[i] = solution.poses[i - chain.begin].T_camera_world;
   }
 
   /// Writes all frames, if any was smoothed: where a keyframe has moved, those that are relative to it and were not
   /// smoothed stay.
-  InertialSmoothing write(FrameHistory& history) const {
+  InertialSmoothing write(FrameHistory& history, const Map& map) const {
     InertialSmoothing result;
     for (const std::optional<Eigen::Isometry3d>& pose : smoothed_) result.smoothed += pose ? 1 : 0;
     if (result.smoothed == 0) return result;
@@ -120,12 +124,12 @@ class InertialSmoother {
       const auto& [timestamp, T_world_camera] = trajectory_[i];
       if (roles_[i] != Role::missing) {
         if (!keyframes_.contains(timestamp))
-          history.replace(timestamp, smoothed_[i].value_or(T_world_camera.inverse()), map_);
-      } else if (smoothed_[i] && !keyframes_.empty()) {
+          history.replace(timestamp, smoothed_[i].value_or(T_world_camera.inverse()), map);
+      } else if (smoothed_[i]) {
         Frame frame;
         frame.timestamp = timestamp;
         frame.T_camera_world = *smoothed_[i];
-        history.add_past(frame, keyframe_near(timestamp), map_);
+        history.add_past(frame, keyframe_near(timestamp), map);
         ++result.placed;
       }
     }
@@ -133,23 +137,25 @@ class InertialSmoother {
   }
 
  private:
-  /// The trajectory with the missing frames that are to be placed, between the poses beside them.
-  static Trajectory with_missing(const Trajectory& trajectory, const DriftingPoses& drifting) {
-    Trajectory complete = trajectory;
-    for (const double timestamp : drifting.missing) {
-      const auto after = std::upper_bound(trajectory.begin(), trajectory.end(), timestamp,
-                                          [](double time, const TimedPose& pose) { return time < pose.timestamp; });
-      const bool has_before = after != trajectory.begin(), has_after = after != trajectory.end();
-      constexpr double never = std::numeric_limits<double>::infinity();
-      const double since = has_before ? timestamp - std::prev(after)->timestamp : never;
-      const double until = has_after ? after->timestamp - timestamp : never;
-      const bool is_between = has_before && has_after && since + until <= drifting.longest_gap;
-      if (!is_between && std::min(since, until) > longest_prediction) continue;
-      complete.push_back({timestamp, since < until ? std::prev(after)->T_world_camera : after->T_world_camera});
+  /// Adds the missing frames that are to be placed to the trajectory, with the pose of the nearest frame.
+  void add_missing(const UnplacedFrames& unplaced, const Trajectory& tracked) {
+    const auto next = [](const Trajectory& poses, double time) {
+      return std::upper_bound(poses.begin(), poses.end(), time,
+                              [](double at, const TimedPose& pose) { return at < pose.timestamp; });
+    };
+    constexpr double never = std::numeric_limits<double>::infinity();
+    Trajectory added;
+    for (const double timestamp : unplaced.missing) {
+      if (keyframes_.contains(timestamp)) continue;
+      const auto after = next(tracked, timestamp);
+      const double since = after != tracked.begin() ? timestamp - std::prev(after)->timestamp : never;
+      const double until = after != tracked.end() ? after->timestamp - timestamp : never;
+      if (since + until > unplaced.longest_gap && std::min(since, until) > longest_prediction_) continue;
+      added.push_back({timestamp, since < until ? std::prev(after)->T_world_camera : after->T_world_camera});
     }
-    std::sort(complete.begin(), complete.end(),
-              [](const TimedPose& a, const TimedPose& b) { return a.timestamp < b.timestamp; });
-    return complete;
+    trajectory_.insert(trajectory_.end(), added.begin(), added.end());
+    std::sort(trajectory_.begin(), trajectory_.end(),
+              [](const TimedPose& first, const TimedPose& second) { return first.timestamp < second.timestamp; });
   }
   KeyFrameId keyframe_near(double timestamp) const {
     const auto after = keyframes_.lower_bound(timestamp);
@@ -160,9 +166,12 @@ class InertialSmoother {
   }
 
   bool drifts(std::size_t i) const { return roles_[i] == Role::drifting || roles_[i] == Role::missing; }
-  /// Whether a frame without a pose can have one by a tracked frame at this time alone.
-  bool is_predictable(std::size_t i, double tracked) const {
-    return roles_[i] == Role::missing && std::abs(trajectory_[i].timestamp - tracked) <= longest_prediction;
+  /// Whether a frame without a pose can have one by those before or after a tracked frame alone, which are tracked for
+  /// `span`.
+  bool is_predictable(std::size_t i, double tracked, double span) const {
+    constexpr double rounding = 1e-6;
+    return roles_[i] == Role::missing &&
+           std::abs(trajectory_[i].timestamp - tracked) <= std::min(longest_prediction_, span) + rounding;
   }
   /// Of a prior, relative to measurements whose deviations are those of their noise.
   geometry::Matrix6d information_of(const Deviations& deviations) const {
@@ -189,8 +198,8 @@ class InertialSmoother {
       while (chain.begin < chain.end && drifts(chain.end - 1)) --chain.end;
       if (chain.end - chain.begin < fewest_frames) continue;
       const double begins = trajectory_[chain.begin].timestamp, ends = trajectory_[chain.end - 1].timestamp;
-      while (chain.begin > lowest && is_predictable(chain.begin - 1, begins)) --chain.begin;
-      while (chain.end < highest && is_predictable(chain.end, ends)) ++chain.end;
+      while (chain.begin > lowest && is_predictable(chain.begin - 1, begins, ends - begins)) --chain.begin;
+      while (chain.end < highest && is_predictable(chain.end, ends, ends - begins)) ++chain.end;
       chain.first = std::max(first, chain.begin), chain.last = std::min(last, chain.end);
       if (chain.first >= chain.last) continue;
       for (std::size_t k = from; k < to; ++k) {
@@ -205,7 +214,7 @@ class InertialSmoother {
 
   BundleProblem problem_of(const Chain& chain) const {
     BundleProblem problem;
-    problem.camera = map_.keyframe(map_.keyframes_by_age().front()).frame.camera.get();
+    problem.camera = camera_.get();
     for (std::size_t i = chain.begin; i < chain.end; ++i) {
       const Eigen::Isometry3d T_camera_world = trajectory_[i].T_world_camera.inverse();
       const auto pose = static_cast<std::uint32_t>(problem.poses.size());
@@ -287,19 +296,19 @@ class InertialSmoother {
   }
 
   /// Moves drifting keyframes, with the points that they alone observe.
-  void move_keyframes(const Chain& chain, const BundleProblem& solution) {
+  void move_keyframes(const Chain& chain, const BundleProblem& solution, Map& map) {
     std::map<KeyFrameId, Eigen::Isometry3d> motions;  // T_world_world, from old to new
     for (std::size_t i = chain.first; i < chain.last; ++i) {
       const auto found = keyframes_.find(trajectory_[i].timestamp);
       if (!drifts(i) || found == keyframes_.end()) continue;
-      Eigen::Isometry3d& pose = map_.keyframe(found->second).frame.T_camera_world;
+      Eigen::Isometry3d& pose = map.keyframe(found->second).frame.T_camera_world;
       const Eigen::Isometry3d& moved = solution.poses[i - chain.begin].T_camera_world;
       motions[found->second] = moved.inverse() * pose;
       pose = moved;
     }
     if (motions.empty()) return;
-    for (const MapPointId id : map_.points().ids()) {
-      MapPoint& point = map_.point(id);
+    for (const MapPointId id : map.points().ids()) {
+      MapPoint& point = map.point(id);
       const auto motion = motions.find(point.reference_keyframe);
       const auto moves = [&](const Observation& seen) { return motions.contains(seen.keyframe); };
       if (motion == motions.end() || !std::all_of(point.observations.begin(), point.observations.end(), moves))
@@ -307,38 +316,45 @@ class InertialSmoother {
       point.position = motion->second * point.position;
       point.viewing_direction = motion->second.linear() * point.viewing_direction;
     }
-    map_.invalidate_copies();
+    map.invalidate_copies();
   }
 
-  Map& map_;
   const InertialHistory& inertia_;
   const MapInertia estimates_;
   const double deviation_factor_;
   const bool scale_is_free_;
-  const Trajectory trajectory_;                             // before
+  const std::shared_ptr<const Camera> camera_;
+  const std::map<double, KeyFrameId> keyframes_;            // by time stamp
+  const double longest_prediction_;                         // [s]
+  Trajectory trajectory_;                                   // before, with missing frames that are to be placed
   std::vector<std::optional<Eigen::Isometry3d>> smoothed_;  // T_camera_world, as far as chains were solved
   std::vector<Role> roles_;                                 // by frame of the trajectory
-  std::map<double, KeyFrameId> keyframes_;                  // by time stamp
 };
 
 /// Relative standard deviation of the scale of a solution: by the increase of the cost where another scale is fixed,
-/// times the root of the mean squared residual if that is larger than 1.
-double deviation_of_scale(const BundleProblem& solution, Optimizer& optimizer, const std::atomic<bool>& stop) {
+/// times the root of the mean squared residual if that is larger than 1. Empty if a problem has no solution.
+std::optional<double> deviation_of_scale(const BundleProblem& solution, Optimizer& optimizer,
+                                         const std::atomic<bool>& stop) {
   constexpr double step = 0.01;
+  bool is_usable = true;
   const auto cost_at = [&](double scale) {
     BundleProblem problem = solution;
     problem.factors.scale = scale, problem.factors.scale_fixed = true;
-    return optimizer.optimize_bundle(problem, stop).final_cost;
+    const BundleSummary summary = optimizer.optimize_bundle(problem, stop);
+    is_usable = is_usable && summary.usable && !stop;
+    return summary.final_cost;
   };
   const double cost = cost_at(solution.factors.scale);
-  const double increase =
-      0.5 * (cost_at(solution.factors.scale * std::exp(step)) + cost_at(solution.factors.scale * std::exp(-step))) -
-      cost;
+  const double larger = cost_at(solution.factors.scale * std::exp(step));
+  const double smaller = cost_at(solution.factors.scale * std::exp(-step));
+  const double increase = 0.5 * (larger + smaller) - cost;
+  if (!is_usable || !(increase > 0.0)) return std::nullopt;
   const BundleFactors& factors = solution.factors;
   const double residuals = 6.0 * static_cast<double>(factors.pose_priors.size() + factors.motion_priors.size()) +
                            15.0 * static_cast<double>(factors.inertial.size());
-  const double unknowns =
-      6.0 * static_cast<double>(solution.poses.size()) + 9.0 * static_cast<double>(factors.motions.size()) + 3.0;
+  constexpr double direction_and_scale = 3.0;
+  const double unknowns = 6.0 * static_cast<double>(solution.poses.size()) +
+                          9.0 * static_cast<double>(factors.motions.size()) + direction_and_scale;
   const double mean_chi_square = 2.0 * cost / std::max(1.0, residuals - unknowns);
   return step / std::sqrt(2.0 * increase) * std::sqrt(std::max(1.0, mean_chi_square));
 }
@@ -370,42 +386,65 @@ void follow_keyframes(FrameHistory& history, const Map& map, const Trajectory& b
   }
 }
 
-std::optional<ScaleEstimate> estimate_scale(const FrameHistory& history, Map& map, const DriftingPoses& drifting,
+RunPath path_of(const FrameHistory& history, const Map& map, const InertialHistory& inertia) {
+  RunPath path;
+  if (map.keyframes().size() == 0 || history.main_submap(map) != inertia.submap()) return path;
+  path.trajectory = history.trajectory(map);
+  const std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
+  const std::vector<double> stamps = linkable_stamps(map, keyframes, inertia);
+  for (std::size_t i = 0; i < keyframes.size(); ++i)
+    if (!std::isnan(stamps[i])) path.keyframes[stamps[i]] = keyframes[i];
+  path.camera = map.keyframe(keyframes.front()).frame.camera;
+  return path;
+}
+
+std::optional<ScaleEstimate> estimate_scale(const RunPath& path, const UnplacedFrames& unplaced,
                                             const InertialHistory& inertia, const MapInertia& estimates,
                                             Optimizer& optimizer, const std::atomic<bool>& stop) {
-  const InertialSmoother smoother(history, map, drifting, inertia, estimates, 1.0, true);
-  ScaleEstimate result;
-  double information = 0.0, logarithm = 0.0, largest_weight = 0.0;
+  if (!path.camera) return std::nullopt;
+  const InertialSmoother smoother(path, unplaced, inertia, estimates, 1.0, true);
+  struct Estimate {
+    double logarithm, weight;
+    Eigen::Vector3d gravity;
+  };
+  std::vector<Estimate> found;
+  double information = 0.0, logarithm = 0.0;
   for (const Chain& chain : smoother.find_chains()) {
     const std::optional<BundleProblem> solution = smoother.solve(chain, optimizer, stop);
     if (stop) return std::nullopt;
     if (!solution) continue;
-    const double deviation = deviation_of_scale(*solution, optimizer, stop);
+    const std::optional<double> deviation = deviation_of_scale(*solution, optimizer, stop);
     if (stop) return std::nullopt;
-    if (!(deviation > 0.0) || !std::isfinite(deviation)) continue;
-    const double weight = 1.0 / (deviation * deviation);
-    if (weight > largest_weight) largest_weight = weight, result.gravity = solution->factors.gravity;
-    information += weight;
-    logarithm += weight * std::log(solution->factors.scale);
+    if (!deviation) continue;
+    found.push_back({std::log(solution->factors.scale), 1.0 / (*deviation * *deviation), solution->factors.gravity});
+    information += found.back().weight;
+    logarithm += found.back().weight * found.back().logarithm;
   }
-  if (!(information > 0.0)) return std::nullopt;
-  result.scale = std::exp(logarithm / information);
-  result.deviation = 1.0 / std::sqrt(information);
-  return result;
+  if (found.empty()) return std::nullopt;
+  logarithm /= information;
+  double chi_square = 0.0;
+  for (const Estimate& each : found) chi_square += each.weight * std::pow(each.logarithm - logarithm, 2);
+  const Estimate& best = *std::max_element(found.begin(), found.end(),
+                                           [](const Estimate& a, const Estimate& b) { return a.weight < b.weight; });
+  constexpr double largest_gain = 2.0;  // of several chains over the best one
+  const double combined = std::sqrt(1.0 / std::min(information, largest_gain * largest_gain * best.weight));
+  const double disagreement = std::max(1.0, chi_square / std::max(1.0, static_cast<double>(found.size()) - 1.0));
+  return ScaleEstimate{std::exp(logarithm), combined * std::sqrt(disagreement), best.gravity};
 }
 
-InertialSmoothing smooth_by_inertia(FrameHistory& history, Map& map, const DriftingPoses& drifting,
+InertialSmoothing smooth_by_inertia(FrameHistory& history, Map& map, const UnplacedFrames& unplaced,
                                     const InertialHistory& inertia, Optimizer& optimizer,
                                     const std::atomic<bool>& stop) {
   const std::optional<MapInertia> estimates = inertia.estimates();
-  if (!estimates || map.keyframes().size() == 0 || history.main_submap(map) != inertia.submap()) return {};
-  InertialSmoother smoother(history, map, drifting, inertia, *estimates, model_factor, false);
+  const RunPath path = path_of(history, map, inertia);
+  if (!estimates || !path.camera) return {};
+  InertialSmoother smoother(path, unplaced, inertia, *estimates, model_factor, false);
   for (const Chain& chain : smoother.find_chains()) {
     const std::optional<BundleProblem> solution = smoother.solve(chain, optimizer, stop);
     if (stop) break;
-    if (solution) smoother.take(chain, *solution);
+    if (solution) smoother.take(chain, *solution, map);
   }
-  return smoother.write(history);
+  return smoother.write(history, map);
 }
 
 }  // namespace holdfast

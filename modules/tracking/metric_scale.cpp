@@ -108,14 +108,12 @@ std::optional<MapInertia> start_by_trajectory(const Trajectory& trajectory, cons
 
 }  // namespace
 
-std::optional<MapInertia> estimate_metres(const FrameHistory& history, Map& map, const DriftingPoses& drifting,
+std::optional<MapInertia> estimate_metres(const RunPath& path, const UnplacedFrames& unplaced,
                                           const InertialHistory& inertia, const std::optional<MapInertia>& tracked,
                                           Optimizer& optimizer, const std::atomic<bool>& stop) {
-  if (map.keyframes().size() == 0 || history.main_submap(map) != inertia.submap()) return std::nullopt;
-  std::optional<MapInertia> result = tracked ? tracked : start_by_trajectory(history.trajectory(map), inertia);
+  std::optional<MapInertia> result = tracked ? tracked : start_by_trajectory(path.trajectory, inertia);
   if (!result) return std::nullopt;
-  const std::optional<ScaleEstimate> estimate =
-      estimate_scale(history, map, drifting, inertia, *result, optimizer, stop);
+  const std::optional<ScaleEstimate> estimate = estimate_scale(path, unplaced, inertia, *result, optimizer, stop);
   if (!estimate || estimate->deviation > largest_scale_deviation) return std::nullopt;
   result->scale = estimate->scale;
   result->gravity = estimate->gravity;

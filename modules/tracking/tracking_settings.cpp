@@ -225,8 +225,8 @@ void describe_inertia(ParameterTable<S>& table) {
             "biases and velocity are known; experimental, since a wrong prediction can drift by metres");
   table
       .add("inertial_time", &S::inertial_time,
-           "time for which poses can be predicted by inertial measurements, because the images do not determine them; "
-           "0 = never")
+           "time for which poses can be predicted by inertial measurements, because the images do not determine them, "
+           "and between tracked frames, at the end of a run, for others without a pose; 0 = never")
       .range(0, 100)
       .unit("s");
   table

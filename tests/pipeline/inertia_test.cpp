@@ -306,8 +306,8 @@ TEST_F(OneCameraWithInertia, EndsInMetres) {
   EXPECT_EQ(pipeline.map().inertia()->scale, 1.0);
   EvaluationOptions with_scale;
   with_scale.alignment = AlignmentKind::sim3;
-  EXPECT_NEAR(evaluate(truth, pipeline.trajectory(), with_scale).alignment.scale, 1.0, 0.02);
-  EXPECT_NEAR(evaluate(truth, pipeline.keyframe_trajectory(), with_scale).alignment.scale, 1.0, 0.02);
+  EXPECT_NEAR(evaluate(truth, pipeline.trajectory(), with_scale).alignment.scale, 1.0, 0.01);
+  EXPECT_NEAR(evaluate(truth, pipeline.keyframe_trajectory(), with_scale).alignment.scale, 1.0, 0.01);
   const double error = evaluate(truth, pipeline.trajectory(), {}).absolute_error.rmse;
   EXPECT_LT(error, 0.006) << "frames between keyframes as well";
   EXPECT_EQ(json["is_metric"], true);

@@ -115,7 +115,7 @@ class InertialSmoothingTest : public testing::Test {
   Map map;
   KeyFrameId reference = map.add_keyframe(keyframe());
   FrameHistory history;
-  DriftingPoses drifting;
+  UnplacedFrames drifting;
   std::atomic<bool> stop = false;
   std::optional<InertialHistory> inertia{*find_imu("bmi055")};
   std::unique_ptr<Optimizer> optimizer = [] {
@@ -187,6 +187,26 @@ TEST_F(InertialSmoothingTest, FramesWithoutAPoseStaySoInALongGap) {
   drifting.longest_gap = 1.9;
   EXPECT_EQ(smooth_by_inertia(history, map, drifting, *inertia, *optimizer, stop).placed, 24U) << "beside its ends";
   EXPECT_LT(largest_error(), 0.005);
+}
+
+TEST_F(InertialSmoothingTest, FramesWithoutAPoseStaySoIfNothingIsToBePredicted) {
+  add_frames_but(frame_count, [](int i) { return i < 5 || (i >= 30 && i < 40); });
+  drifting.longest_gap = 0.0;
+  EXPECT_EQ(smooth_by_inertia(history, map, drifting, *inertia, *optimizer, stop).placed, 0U);
+}
+
+/// The bridge ends within the gap: what is missing behind it is as far from tracked frames as the whole gap.
+TEST_F(InertialSmoothingTest, ABridgeIsNoSideOfAGap) {
+  add_frames_but(frame_count, [](int i) { return i >= 50 && i < 80; });
+  for (int i = 30; i < 50; ++i) drifting.frames.push_back(frame_interval * i);
+  drifting.longest_gap = 1.5;
+  EXPECT_EQ(smooth_by_inertia(history, map, drifting, *inertia, *optimizer, stop).placed, 12U)
+      << "half a second before the tracked frames behind the gap";
+}
+
+TEST_F(InertialSmoothingTest, AFewTrackedFramesPredictNoLongerThanTheyLast) {
+  add_frames_but(frame_count, [](int i) { return i < 45 || i >= 50; });
+  EXPECT_EQ(smooth_by_inertia(history, map, drifting, *inertia, *optimizer, stop).placed, 8U);
 }
 
 TEST_F(InertialSmoothingTest, AFalsePoseDoesNotHoldABridge) {

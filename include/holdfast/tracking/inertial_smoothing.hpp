@@ -3,6 +3,8 @@
 
 #include <atomic>
 #include <cstddef>
+#include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -13,12 +15,20 @@
 namespace holdfast {
 
 /// Time stamps of frames that no view of the map placed [s], increasing.
-struct DriftingPoses {
-  std::vector<double> frames;     ///< no keyframes
+struct UnplacedFrames {
+  std::vector<double> frames;     ///< with a pose that drifts, no keyframes
   std::vector<double> keyframes;  ///< which no adjustment of the map has placed since
-  std::vector<double> missing;    ///< frames without a pose
-  double longest_gap = 0.0;       ///< time between tracked frames in which missing ones get a pose [s]
+  std::vector<double> missing;    ///< without a pose
+  double longest_gap = 0.0;       ///< time between tracked frames in which missing ones get a pose [s]; 0 = never
 };
+
+/// The frames of the main submap of a run, if inertial measurements link its keyframes.
+struct RunPath {
+  Trajectory trajectory;
+  std::map<double, KeyFrameId> keyframes;  ///< of this run, by time stamp
+  std::shared_ptr<const Camera> camera;    ///< none: empty
+};
+RunPath path_of(const FrameHistory& history, const Map& map, const InertialHistory& inertia);
 
 /// What smoothing did.
 struct InertialSmoothing {
@@ -45,9 +55,10 @@ struct ScaleEstimate {
 /// weighted by their noise; the map and the poses stay. All frames count, because much of the acceleration of a hand is
 /// too fast for keyframes. The poses must not be smoothed: a smoothed path has smaller accelerations, and too large a
 /// scale. The standard deviation is that of the profile of the cost; it grows with the root of the mean squared
-/// residual if that is larger than 1. Several chains of frames are weighted by their information. `estimates`: initial
-/// values. Empty if there is no chain.
-std::optional<ScaleEstimate> estimate_scale(const FrameHistory& history, Map& map, const DriftingPoses& drifting,
+/// residual if that is larger than 1. Several chains of frames are weighted by their information; errors of the IMU's
+/// model are common to them, and one camera's scale may drift, so that the result is at most twice as certain as the
+/// best one, and less certain where they disagree. `estimates`: initial values. Empty if there is no chain.
+std::optional<ScaleEstimate> estimate_scale(const RunPath& path, const UnplacedFrames& unplaced,
                                             const InertialHistory& inertia, const MapInertia& estimates,
                                             Optimizer& optimizer, const std::atomic<bool>& stop);
 
@@ -58,9 +69,9 @@ std::optional<ScaleEstimate> estimate_scale(const FrameHistory& history, Map& ma
 /// thereby spread over it by the uncertainty of the measurements. These weigh a ninth of what their noise says, for
 /// errors of the IMU's model. Drifting keyframes move with the points that no other keyframe observes. Where a link is
 /// missing, the chain of frames ends; a bridge at the end of a chain stays as it is. Frames without a pose get one like
-/// those that drift, between tracked frames that are at most `longest_gap` apart, and where a chain begins or ends
-/// within half a second of a tracked one. `stop`: from any thread; chains that were not solved yet stay.
-InertialSmoothing smooth_by_inertia(FrameHistory& history, Map& map, const DriftingPoses& drifting,
+/// those that drift, between tracked frames that are at most `longest_gap` apart, and elsewhere within half a second of
+/// those at the end of a chain that is as long. `stop`: from any thread; chains that were not solved yet stay.
+InertialSmoothing smooth_by_inertia(FrameHistory& history, Map& map, const UnplacedFrames& unplaced,
                                     const InertialHistory& inertia, Optimizer& optimizer,
                                     const std::atomic<bool>& stop);
 

@@ -20,7 +20,6 @@
 #include "holdfast/tracking/loss_recovery.hpp"
 #include "holdfast/tracking/map_request.hpp"
 #include "holdfast/tracking/map_start.hpp"
-#include "holdfast/tracking/metric_scale.hpp"
 #include "holdfast/tracking/pose_covariance.hpp"
 #include "holdfast/tracking/tracker_state.hpp"
 #include "holdfast/tracking/tracking_context.hpp"
@@ -73,18 +72,14 @@ class Tracker {
   void follow_keyframes(const MapAccess& map, const Trajectory& before) {
     holdfast::follow_keyframes(context_.history, map.map(), before);
   }
-  /// Estimates of all inertial measurements, for one camera at the end of a run (metric_scale.hpp).
-  std::optional<MapInertia> estimate_metres(const MapAccess& map, const DriftingPoses& drifting,
-                                            const InertialHistory& inertia, Optimizer& optimizer,
-                                            const std::atomic<bool>& stop) const {
-    return holdfast::estimate_metres(context_.history, map.map(), drifting, inertia, inertia.estimates(), optimizer,
-                                     stop);
+  RunPath path_of_run(const MapAccess& map, const InertialHistory& inertia) const {
+    return path_of(context_.history, map.map(), inertia);
   }
   /// Estimates the poses between keyframes again by the map as it is now, at the end of a run.
-  void smooth_by_inertia(const MapAccess& map, const DriftingPoses& drifting, const InertialHistory& inertia,
+  void smooth_by_inertia(const MapAccess& map, const UnplacedFrames& unplaced, const InertialHistory& inertia,
                          Optimizer& optimizer, const std::atomic<bool>& stop) {
     placed_by_inertia_ +=
-        holdfast::smooth_by_inertia(context_.history, map.map(), drifting, inertia, optimizer, stop).placed;
+        holdfast::smooth_by_inertia(context_.history, map.map(), unplaced, inertia, optimizer, stop).placed;
   }
 
   /// Smooths the trajectory at the end of a run, if the settings say so (trajectory_smoothing.hpp).
