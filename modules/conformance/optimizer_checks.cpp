@@ -392,7 +392,7 @@ std::vector<Check> optimizer_checks() {
        {header, "Keyframe poses linked by relative poses (Mur-Artal and Tardos 2017, section III-D)."},
        solves_a_graph},
       {"KeepsTheVertical",
-       {header, "Whether optimize_pose_graph() obeys PoseGraphProblem::vertical; others ignore it."},
+       {header, "Whether both functions for pose graphs obey PoseGraphProblem::vertical; others ignore it."},
        keeps_the_vertical},
       {"LeavesAGraphThatCannotBeSolved", unchanged, leaves_a_graph_that_cannot_be_solved},
       {"SurvivesNumbersThatAreNone",

@@ -121,9 +121,10 @@ struct PoseGraphProblem {
   };
   std::vector<Node> nodes;
   std::vector<Edge> edges;
-  /// Direction of gravity in the world frame, of any length but 0, with which nothing is usable. With it, nodes have four degrees of freedom, position and
-  /// yaw about it, and keep roll and pitch (Qin, Li and Shen, "VINS-Mono", T-RO 2018, section VIII; Campos et al.,
-  /// "ORB-SLAM3", T-RO 2021, section VII); without it, six. Only for optimizers that keep it (keeps_vertical()).
+  /// Direction of gravity in the world frame, of any length but 0, with which nothing is usable. With it, nodes have
+  /// four degrees of freedom, position and yaw about it, and keep roll and pitch (Qin, Li and Shen, "VINS-Mono", T-RO
+  /// 2018, section VIII; Campos et al., "ORB-SLAM3", T-RO 2021, section VII); without it, six. Only for optimizers that
+  /// keep it (keeps_vertical()).
   std::optional<Eigen::Vector3d> vertical;
   int iterations = 20;
 };

@@ -48,8 +48,8 @@ struct LoopClosingSettings {
   int essential_weight = 100;
   int graph_iterations = 30;  ///< maximum iterations of the pose graph
   /// With inertial measurements, keyframes get the roll and pitch that these say, in the world of the oldest one with a
-  /// vertical, and the pose graph has four degrees of freedom. A submap in which fewer than four fifths of the keyframes
-  /// have a vertical keeps six.
+  /// vertical, and the pose graph has four degrees of freedom. A submap in which fewer than four fifths of the
+  /// keyframes have a vertical keeps six.
   bool keep_vertical = false;
   bool full_adjustment = true;      ///< whether full bundle adjustment follows a loop closure
   int full_robust_iterations = 20;  ///< its maximum iterations with the robust cost
