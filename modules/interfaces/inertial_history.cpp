@@ -4,7 +4,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 #include "holdfast/core/imu_timeline.hpp"
@@ -20,18 +19,6 @@ constexpr double max_link = 5.0;  // [s]
 constexpr double min_gyroscope_deviation = 0.003, min_accelerometer_deviation = 0.03;
 
 bool is_earlier(const ImuSample& sample, double time) { return sample.timestamp < time; }
-
-bool is_saturated(const ImuSample& sample, const ImuCalibration& imu) {
-  constexpr double share = 0.999;
-  return sample.angular_velocity.cwiseAbs().maxCoeff() >= share * imu.gyroscope_range ||
-         sample.acceleration.cwiseAbs().maxCoeff() >= share * imu.accelerometer_range;
-}
-
-/// Estimates of an IMU that is mounted and timed otherwise do not fit the measurements (InertialMotion).
-bool is_calibrated_as(const MapInertia& known, const ImuCalibration& imu) {
-  return (known.T_body_camera.matrix() - imu.T_body_camera.matrix()).cwiseAbs().maxCoeff() < 1e-6 &&
-         std::abs(known.calibrated_time_offset - imu.time_offset) < 1e-6;
-}
 
 /// Whether a covariance has full rank beyond rounding, judged by the correlations.
 bool has_full_rank(const geometry::Matrix15d& covariance) {
@@ -71,6 +58,12 @@ BundleFactors::MotionPrior bias_prior(std::uint32_t motion, const MapInertia& es
 }
 
 }  // namespace
+
+bool is_calibrated_as(const MapInertia& estimates, const ImuCalibration& imu) {
+  constexpr double tolerance = 1e-6;
+  return (estimates.T_body_camera.matrix() - imu.T_body_camera.matrix()).cwiseAbs().maxCoeff() < tolerance &&
+         std::abs(estimates.calibrated_time_offset - imu.time_offset) < tolerance;
+}
 
 void InertialHistory::add(const SensorFrame& frame) {
   const std::lock_guard lock(mutex_);
@@ -131,18 +124,8 @@ std::optional<geometry::Preintegration> InertialHistory::motion_between(std::spa
   if (first != samples.begin()) --first;
   auto last = std::lower_bound(first, samples.end(), end, is_earlier);
   if (last != samples.end()) ++last;
-  std::vector<ImuSample> covered(first, last);
-  if (std::any_of(first, last, [&](const ImuSample& sample) { return is_saturated(sample, imu_); }))
-    return std::nullopt;
-  // The samples beyond the latest and the first frame may be missing.
-  if (!covered.empty() && covered.back().timestamp < end && end - covered.back().timestamp <= 2.0 / imu_.rate) {
-    covered.push_back(covered.back());
-    covered.back().timestamp = end;
-  }
-  if (!covered.empty() && covered.front().timestamp > begin && covered.front().timestamp - begin <= 2.0 / imu_.rate) {
-    covered.insert(covered.begin(), covered.front());
-    covered.front().timestamp = begin;
-  }
+  if (has_saturated({first, last}, imu_)) return std::nullopt;
+  const std::vector<ImuSample> covered = covering({first, last}, begin, end, imu_);
   std::optional<geometry::Preintegration> motion =
       geometry::preintegrate(covered, begin, end, imu_.noise, estimates.bias);
   if (motion && !has_full_rank(motion->covariance())) motion.reset();

@@ -9,6 +9,7 @@
 
 #include "holdfast/core/imu_timeline.hpp"
 #include "holdfast/geometry/inertial_start.hpp"
+#include "holdfast/interfaces/inertial_history.hpp"
 
 namespace holdfast {
 
@@ -41,20 +42,6 @@ constexpr double gyroscope_repeatability = 0.003, accelerometer_repeatability = 
 constexpr double gravity_repeatability = 0.003, mounting_repeatability = 0.001, time_repeatability = 0.001;
 constexpr double largest_first_deviation = 0.02;  // of the first pose [m]
 constexpr int most_known_trials = 3;
-
-/// The samples with one at each end of the interval, where one is missing by at most `tolerance` [s].
-std::vector<ImuSample> covering(std::vector<ImuSample> samples, double begin, double end, double tolerance) {
-  if (samples.empty()) return samples;
-  if (samples.back().timestamp < end && end - samples.back().timestamp <= tolerance) {
-    samples.push_back(samples.back());
-    samples.back().timestamp = end;
-  }
-  if (samples.front().timestamp > begin && samples.front().timestamp - begin <= tolerance) {
-    samples.insert(samples.begin(), samples.front());
-    samples.front().timestamp = begin;
-  }
-  return samples;
-}
 
 /// The angular velocity at a time that the samples cover, or else the nearest one.
 Eigen::Vector3d rate_at(const std::vector<ImuSample>& samples, double time) {
@@ -148,11 +135,10 @@ void InertialMotion::begin_frame(const SensorFrame& frame) {
   remember_frame();
   if (!before) return;
   weight_ = frame.timestamp - *before > slow_interval ? weight_of_slow_frame : 1;
-  const double tolerance = 2.0 / imu_->rate;
-  const std::vector<ImuSample> samples = covering(frame.imu, *before, frame.timestamp, tolerance);
+  const std::vector<ImuSample> samples = covering(frame.imu, *before, frame.timestamp, *imu_);
   const ImuBias bias = last_ ? last_->state().bias : ImuBias();
   const auto motion = geometry::preintegrate(samples, *before, frame.timestamp, imu_->noise, bias);
-  if (!motion || saturates(frame)) {
+  if (!motion || has_saturated(samples, *imu_)) {
     interrupt();
     return;
   }
@@ -171,15 +157,6 @@ void InertialMotion::remember_frame() {
   frames_.push_back(*timestamp_);
   const double begin = *timestamp_ - longest_start_time;
   while (frames_.size() > 2 && frames_[1] < begin) frames_.erase(frames_.begin());
-}
-
-/// A saturated measurement says nothing of the motion.
-bool InertialMotion::saturates(const SensorFrame& frame) const {
-  constexpr double share = 0.999;
-  return std::any_of(frame.imu.begin(), frame.imu.end(), [this](const ImuSample& sample) {
-    return sample.angular_velocity.cwiseAbs().maxCoeff() >= share * imu_->gyroscope_range ||
-           sample.acceleration.cwiseAbs().maxCoeff() >= share * imu_->accelerometer_range;
-  });
 }
 
 Eigen::Isometry3d InertialMotion::body_pose(const Eigen::Isometry3d& T_camera_world) const {
@@ -361,12 +338,6 @@ std::optional<MapInertia> InertialMotion::estimates() const {
   return result;
 }
 
-bool InertialMotion::is_calibrated_as(const MapInertia& known) const {
-  constexpr double tolerance = 1e-6;
-  return (imu_->T_body_camera.matrix() - known.T_body_camera.matrix()).cwiseAbs().maxCoeff() < tolerance &&
-         std::abs(imu_->time_offset - known.calibrated_time_offset) < tolerance;
-}
-
 /// Biases and corrections of the calibration are used for the same calibration only, gravity and scale always.
 void InertialMotion::begin_with_known(const Eigen::Isometry3d& T_camera_world) {
   const MapInertia& known = *known_;
@@ -384,7 +355,7 @@ void InertialMotion::begin_with_known(const Eigen::Isometry3d& T_camera_world) {
                                         time_offset_deviation};
   geometry::InertialState state;
   state.T_world_body = body_pose(T_camera_world);
-  const bool is_same = is_calibrated_as(known);
+  const bool is_same = is_calibrated_as(known, *imu_);
   if (is_same) {
     state.bias = known.bias;
     const Eigen::Vector3d turn = known.time_offset * (*rate_ - known.bias.gyroscope);

@@ -104,6 +104,28 @@ TEST(ImuTimeline, StampsAreByTheClockOfTheCamera) {
   EXPECT_NEAR(timeline.take(1.15).back().timestamp, 1.2, 1e-12);
 }
 
+TEST(ImuTimeline, SamplesThatMissTheEndsByLittleAreRepeatedThere) {
+  ImuCalibration imu;
+  imu.rate = 10.0;
+  const std::vector<ImuSample> samples = {resting(1.0), resting(1.1), resting(1.2)};
+  EXPECT_THAT(stamps(covering(samples, 1.0, 1.2, imu)), ElementsAre(1.0, 1.1, 1.2));
+  EXPECT_THAT(stamps(covering(samples, 0.85, 1.35, imu)), ElementsAre(0.85, 1.0, 1.1, 1.2, 1.35));
+  EXPECT_THAT(stamps(covering(samples, 0.75, 1.45, imu)), ElementsAre(1.0, 1.1, 1.2)) << "a gap";
+  EXPECT_THAT(covering({}, 1.0, 1.2, imu), IsEmpty());
+}
+
+TEST(ImuTimeline, AMeasurementAtTheEndOfTheRangeIsSaturated) {
+  ImuCalibration imu;
+  imu.gyroscope_range = 10.0, imu.accelerometer_range = 40.0;
+  std::vector<ImuSample> samples = {resting(0.0), resting(0.1)};
+  EXPECT_FALSE(has_saturated(samples, imu));
+  samples[1].angular_velocity.y() = -10.0;
+  EXPECT_TRUE(has_saturated(samples, imu));
+  samples[1] = resting(0.1);
+  samples[1].acceleration.x() = 40.0;
+  EXPECT_TRUE(has_saturated(samples, imu));
+}
+
 TEST(ImuSuspicions, PlausibleMeasurementsHaveNone) {
   for (const double degrees : {0.0, 2.0, 10.0, 40.0})
     EXPECT_THAT(imu_suspicions(looking_around(20, degrees)), IsEmpty());

@@ -17,6 +17,9 @@
 
 namespace holdfast {
 
+/// Whether estimates belong to this calibration: those of an IMU that is mounted or timed otherwise do not fit.
+bool is_calibrated_as(const MapInertia& estimates, const ImuCalibration& imu);
+
 /// The inertial measurements of a run, from which adjustments preintegrate the motion between any two keyframes: a
 /// keyframe that is culled needs no merging. The latest 240,000 measurements are kept (15 MB): 20 minutes at 200 Hz, 4
 /// at 1 kHz. Any thread.

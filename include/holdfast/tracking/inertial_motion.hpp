@@ -109,7 +109,6 @@ class InertialMotion {
 
   void remember_frame();
   bool is_slow_camera() const;
-  bool saturates(const SensorFrame& frame) const;
   Eigen::Isometry3d body_pose(const Eigen::Isometry3d& T_camera_world) const;
   Eigen::Isometry3d camera_pose(const Eigen::Isometry3d& T_world_body) const;
   InertialFilter::PoseCovariance measurement_covariance(double deviation) const;
@@ -118,7 +117,6 @@ class InertialMotion {
   void refute();
   void learn(const Eigen::Isometry3d& T_camera_world, double deviation);
   void try_to_start(const PastPose& past_pose);
-  bool is_calibrated_as(const MapInertia& known) const;
   void begin_with_known(const Eigen::Isometry3d& T_camera_world);
   void begin_filter(const geometry::InertialStart& start, const std::vector<Eigen::Isometry3d>& poses,
                     const std::vector<geometry::Preintegration>& motions, const std::vector<Eigen::Vector3d>& rates,
