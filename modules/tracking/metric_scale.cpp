@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "frame_chains.hpp"
 #include "holdfast/geometry/inertial_start.hpp"
 
 namespace holdfast {
@@ -106,7 +107,68 @@ std::optional<MapInertia> start_by_trajectory(const Trajectory& trajectory, cons
   return best;
 }
 
+/// Relative standard deviation of the scale of a solution: by the increase of the cost where another scale is fixed,
+/// times the root of the mean squared residual if that is larger than 1. Empty if a problem has no solution.
+std::optional<double> deviation_of_scale(const FrameChains::Solution& solution, Optimizer& optimizer,
+                                         const std::atomic<bool>& stop) {
+  constexpr double step = 0.01;
+  bool is_usable = true;
+  const auto cost_at = [&](double factor) {
+    BundleProblem problem = solution.problem;
+    problem.factors.scale *= factor, problem.factors.scale_fixed = true;
+    const BundleSummary summary = optimizer.optimize_bundle(problem, stop);
+    is_usable = is_usable && summary.usable && !stop;
+    return summary.final_cost;
+  };
+  const double larger = cost_at(std::exp(step)), smaller = cost_at(std::exp(-step));
+  const double increase = 0.5 * (larger + smaller) - solution.cost;
+  if (!is_usable || !(increase > 0.0)) return std::nullopt;
+  const BundleFactors& factors = solution.problem.factors;
+  const double residuals = 6.0 * static_cast<double>(factors.pose_priors.size() + factors.motion_priors.size()) +
+                           15.0 * static_cast<double>(factors.inertial.size());
+  constexpr double direction_and_scale = 3.0;
+  const double unknowns = 6.0 * static_cast<double>(solution.problem.poses.size()) +
+                          9.0 * static_cast<double>(factors.motions.size()) + direction_and_scale;
+  const double mean_chi_square = 2.0 * solution.cost / std::max(1.0, residuals - unknowns);
+  return step / std::sqrt(2.0 * increase) * std::sqrt(std::max(1.0, mean_chi_square));
+}
+
 }  // namespace
+
+std::optional<ScaleEstimate> estimate_scale(const RunPath& path, const UnplacedFrames& unplaced,
+                                            const InertialHistory& inertia, const MapInertia& estimates,
+                                            Optimizer& optimizer, const std::atomic<bool>& stop) {
+  if (!path.camera) return std::nullopt;
+  const FrameChains frames(path, unplaced, inertia, estimates, 1.0, true);
+  struct Estimate {
+    double logarithm, weight;
+    Eigen::Vector3d gravity;
+  };
+  std::vector<Estimate> found;
+  double information = 0.0, logarithm = 0.0;
+  for (const FrameChain& chain : frames.find()) {
+    const std::optional<FrameChains::Solution> solution = frames.solve(chain, optimizer, stop);
+    if (stop) return std::nullopt;
+    if (!solution) continue;
+    const std::optional<double> deviation = deviation_of_scale(*solution, optimizer, stop);
+    if (stop) return std::nullopt;
+    if (!deviation) continue;
+    found.push_back({std::log(solution->problem.factors.scale), 1.0 / (*deviation * *deviation),
+                     solution->problem.factors.gravity});
+    information += found.back().weight;
+    logarithm += found.back().weight * found.back().logarithm;
+  }
+  if (found.empty()) return std::nullopt;
+  logarithm /= information;
+  double chi_square = 0.0;
+  for (const Estimate& each : found) chi_square += each.weight * std::pow(each.logarithm - logarithm, 2);
+  const Estimate& best = *std::max_element(found.begin(), found.end(),
+                                           [](const Estimate& a, const Estimate& b) { return a.weight < b.weight; });
+  constexpr double largest_gain = 2.0;  // of several chains over the best one
+  const double combined = std::sqrt(1.0 / std::min(information, largest_gain * largest_gain * best.weight));
+  const double disagreement = std::max(1.0, chi_square / std::max(1.0, static_cast<double>(found.size()) - 1.0));
+  return ScaleEstimate{std::exp(logarithm), combined * std::sqrt(disagreement), best.gravity};
+}
 
 std::optional<MapInertia> estimate_metres(const RunPath& path, const UnplacedFrames& unplaced,
                                           const InertialHistory& inertia, const std::optional<MapInertia>& tracked,

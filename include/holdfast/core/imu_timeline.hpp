@@ -14,8 +14,8 @@ namespace holdfast {
 /// Appends the samples of a later frame without those that `samples` already contains, as if both frames were one.
 void append_imu(std::vector<ImuSample>& samples, const std::vector<ImuSample>& later);
 
-/// The first and the last sample are repeated at the ends of the interval [s], where the samples miss them by at most
-/// two sampling intervals: those beyond the first and the latest frame of a recording may be missing.
+/// Returns the samples, the first and the last one repeated at the ends of the interval [s] where they miss these by at
+/// most two sampling intervals: those beyond the first and the latest frame of a recording may be missing.
 std::vector<ImuSample> covering(std::vector<ImuSample> samples, double begin, double end, const ImuCalibration& imu);
 
 /// Whether any measurement is at the end of the sensor's range: it says nothing of the motion.
