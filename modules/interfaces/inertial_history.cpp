@@ -97,6 +97,11 @@ std::optional<MapInertia> InertialHistory::estimates() const {
   return found != estimates_.end() ? std::optional(found->second) : std::nullopt;
 }
 
+std::vector<ImuSample> InertialHistory::samples() const {
+  const std::lock_guard lock(mutex_);
+  return samples_;
+}
+
 MapInertia InertialHistory::nominal() const {
   MapInertia result;
   result.T_body_camera = imu_.T_body_camera;
@@ -144,11 +149,7 @@ std::vector<InertialHistory::Link> InertialHistory::links(std::span<const double
     if (!std::isnan(timestamps[i])) order.push_back(i);
   std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return timestamps[a] < timestamps[b]; });
   std::vector<Link> links;
-  std::vector<ImuSample> samples;  // a copy, because tracking waits for the mutex
-  {
-    const std::lock_guard lock(mutex_);
-    samples = samples_;
-  }
+  const std::vector<ImuSample> samples = this->samples();  // a copy, because tracking waits for the mutex
   for (std::size_t i = 0; i + 1 < order.size(); ++i)
     if (const auto motion = motion_between(samples, timestamps[order[i]], timestamps[order[i + 1]], estimates))
       links.push_back({order[i], order[i + 1], *motion});

@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "frame_chains.hpp"
-#include "holdfast/geometry/inertial_start.hpp"
+#include "holdfast/core/imu_timeline.hpp"
+#include "holdfast/tracking/inertial_start_search.hpp"
 
 namespace holdfast {
 
@@ -16,81 +17,52 @@ namespace {
 
 constexpr double window_spacing = 0.2, least_window_time = 5.0;  // [s]
 constexpr std::size_t most_window_poses = 100, most_windows = 4;
-constexpr double mounting_prior = 0.015, time_offset_prior = 0.005;  // [rad], [s]
-constexpr double largest_window_deviation = 0.1;                     // of the scale of the start, relative
-constexpr double largest_scale_deviation = 0.01;                     // of the scale, relative
+constexpr double smallest_pose_deviation = 0.001;  // [m]
+constexpr double largest_window_deviation = 0.1;   // of the scale of the start, relative
+constexpr double largest_scale_deviation = 0.01;   // of the scale, relative
 
-/// Poses that measurements link, and the motions between them.
-struct MotionWindow {
-  std::vector<Eigen::Isometry3d> T_world_camera;
-  std::vector<geometry::Preintegration> motions;
-  double time = 0.0;  // [s]
-};
-
-/// The trajectory at intervals, in a few windows of at most `most_window_poses` poses.
-std::vector<MotionWindow> find_motion_windows(const Trajectory& trajectory, const InertialHistory& inertia) {
+/// The trajectory at intervals, in a few windows that measurements link, of at most `most_window_poses` poses.
+std::vector<Trajectory> find_windows(const Trajectory& trajectory, const InertialHistory& inertia) {
   std::vector<double> stamps;
-  std::vector<Eigen::Isometry3d> poses;
+  Trajectory poses;
   for (const TimedPose& pose : trajectory) {
     if (!stamps.empty() && pose.timestamp - stamps.back() < window_spacing) continue;
     stamps.push_back(pose.timestamp);
-    poses.push_back(pose.T_world_camera);
+    poses.push_back(pose);
   }
-  std::vector<MotionWindow> windows;
+  std::vector<Trajectory> windows;
   std::size_t last = std::numeric_limits<std::size_t>::max();
   for (const InertialHistory::Link& link : inertia.links(stamps, inertia.nominal())) {
-    if (link.first != last || windows.back().T_world_camera.size() == most_window_poses)
-      windows.push_back({{poses[link.first]}, {}, 0.0});
-    windows.back().T_world_camera.push_back(poses[link.second]);
-    windows.back().motions.push_back(link.measured);
-    windows.back().time += link.measured.duration();
+    if (link.first != last || windows.back().size() == most_window_poses) windows.push_back({poses[link.first]});
+    windows.back().push_back(poses[link.second]);
     last = link.second;
   }
-  std::erase_if(windows, [](const MotionWindow& window) { return window.time < least_window_time; });
+  std::erase_if(windows, [](const Trajectory& window) {
+    return window.back().timestamp - window.front().timestamp < least_window_time;
+  });
   if (windows.size() <= most_windows) return windows;
-  std::vector<MotionWindow> chosen;  // evenly
+  std::vector<Trajectory> chosen;  // evenly
   for (std::size_t i = 0; i < most_windows; ++i)
     chosen.push_back(std::move(windows[i * windows.size() / most_windows]));
   return chosen;
 }
 
-/// Angular velocity at each pose: the mean over the motions before and after it.
-std::vector<Eigen::Vector3d> turn_rates_of(const MotionWindow& window) {
-  std::vector<Eigen::Vector3d> of_motions, rates;
-  for (const geometry::Preintegration& motion : window.motions)
-    of_motions.push_back(geometry::log_so3(motion.delta().rotation) / motion.duration());
-  for (std::size_t i = 0; i < window.T_world_camera.size(); ++i)
-    rates.push_back(0.5 * (of_motions[i > 0 ? i - 1 : 0] + of_motions[std::min(i, of_motions.size() - 1)]));
-  return rates;
-}
-
-/// The start with the first deviations of the poses that explain their residuals, or else with the largest.
-geometry::InertialStart start_in_window(const MotionWindow& window, const MapInertia& nominal,
-                                        geometry::InertialStartOptions& options) {
-  const std::vector<Eigen::Vector3d> rates = turn_rates_of(window);
-  options.estimate_scale = true;
-  options.mounting_deviation = mounting_prior;
-  options.time_offset_deviation = time_offset_prior;
-  geometry::InertialStart start;
-  for (const double deviation : {0.001, 0.002, 0.005, 0.01}) {
-    options.position_deviation = deviation, options.rotation_deviation = 0.5 * deviation;
-    start = geometry::start_inertially(window.T_world_camera, window.motions, nominal.T_body_camera, options, rates);
-    if (start.mean_chi_square <= options.largest_mean_chi_square) break;
-  }
-  return start;
-}
-
 /// Estimates of the window that determines the scale best.
 std::optional<MapInertia> start_by_trajectory(const Trajectory& trajectory, const InertialHistory& inertia) {
+  if (trajectory.empty()) return std::nullopt;
+  const std::vector<ImuSample> samples =
+      covering(inertia.samples(), trajectory.front().timestamp, trajectory.back().timestamp, inertia.imu());
+  InertialStartSearch search;
+  search.estimate_scale = true;
+  search.smallest_deviation = smallest_pose_deviation;
+  search.largest_scale_deviation = largest_window_deviation;
   std::optional<MapInertia> best;
-  double best_deviation = largest_window_deviation;
-  const MapInertia nominal = inertia.nominal();
-  for (const MotionWindow& window : find_motion_windows(trajectory, inertia)) {
-    geometry::InertialStartOptions options;
-    const geometry::InertialStart start = start_in_window(window, nominal, options);
-    if (!std::isfinite(start.mean_chi_square) || !(start.scale_deviation < best_deviation)) continue;
-    best_deviation = start.scale_deviation;
-    best = nominal;
+  for (const Trajectory& window : find_windows(trajectory, inertia)) {
+    const std::optional<FoundInertialStart> found = find_inertial_start(window, samples, inertia.imu(), search);
+    if (!found) continue;
+    const geometry::InertialStart& start = found->start;
+    search.largest_scale_deviation = start.scale_deviation;
+    best = inertia.nominal();
     best->gravity = start.gravity;
     best->scale = start.scale;
     best->bias = start.bias;
@@ -99,10 +71,10 @@ std::optional<MapInertia> start_by_trajectory(const Trajectory& trajectory, cons
     best->gravity_deviation = start.direction_deviation;
     best->gyroscope_deviation = start.gyroscope_bias_deviation;
     best->accelerometer_deviation = start.accelerometer_bias_deviation;
-    best->mounting_deviation = mounting_prior;
-    best->time_offset_deviation = time_offset_prior;
-    best->position_deviation = options.position_deviation;
-    best->rotation_deviation = options.rotation_deviation;
+    best->mounting_deviation = nominal_mounting_deviation;
+    best->time_offset_deviation = nominal_time_offset_deviation;
+    best->position_deviation = found->deviations.position;
+    best->rotation_deviation = found->deviations.rotation;
   }
   return best;
 }

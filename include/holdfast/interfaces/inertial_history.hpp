@@ -41,6 +41,10 @@ class InertialHistory {
   /// Forgets all estimates: the map was cleared, and begins again with submap 0 and the first keyframe.
   void forget_map();
   std::optional<MapInertia> estimates() const;
+  /// Calibration as it is given.
+  const ImuCalibration& imu() const { return imu_; }
+  /// The measurements that are kept, by the clock of the camera.
+  std::vector<ImuSample> samples() const;
   /// The nominal calibration, with which nothing else is known.
   MapInertia nominal() const;
   /// Submap whose keyframes the measurements link.

@@ -2,21 +2,16 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <functional>
 #include <optional>
-#include <vector>
 
 #include "holdfast/core/imu.hpp"
 #include "holdfast/core/map_inertia.hpp"
 #include "holdfast/core/predicted_pose.hpp"
 #include "holdfast/core/sensor_frame.hpp"
 #include "holdfast/tracking/inertial_filter.hpp"
+#include "holdfast/tracking/inertial_starter.hpp"
 
 namespace holdfast {
-
-namespace geometry {
-struct InertialStart;
-}
 
 /// A pose that inertial measurements predict.
 struct InertialPrediction : PredictedPose {
@@ -25,14 +20,11 @@ struct InertialPrediction : PredictedPose {
 };
 
 /// Motion of the camera by inertial measurements. First, gravity, biases, velocity and, with one camera, the scale are
-/// estimated from the tracked poses of the last seconds (geometry::start_inertially); then an InertialFilter keeps them
-/// up to date. The filter must predict some poses before others use it (is_reliable); one that contradicts the images
-/// for long, or misses measurements, ends, and the start begins again. Until then, and without an IMU, it predicts
-/// nothing. Where gravity, biases and scale are known, from the map or from before a gap, a filter begins with the
-/// first pose, and learns the velocity from the next ones.
-///
-/// A slow camera, which takes fewer frames in the time of the start than it needs, starts with its last poses, at least
-/// six of the last 15 s; a prediction over more than 0.2 s counts as three.
+/// estimated from the tracked poses of the last seconds (InertialStarter); then an InertialFilter keeps them up to
+/// date. The filter must predict some poses before others use it (is_reliable); one that contradicts the images for
+/// long, or misses measurements, ends, and the start begins again. Until then, and without an IMU, it predicts nothing.
+/// Where gravity, biases and scale are known, from the map or from before a gap, a filter begins with the first pose,
+/// and learns the velocity from the next ones. A prediction over more than 0.2 s, as of a slow camera, counts as three.
 ///
 /// For each frame, begin_frame() is called first, then follow_map(), and one of found(), bridged() and lost() last.
 /// Poses are those of the camera in the map. Deterministic. One thread.
@@ -74,8 +66,7 @@ class InertialMotion {
   bool correct(const Eigen::Isometry3d& T_camera_world, const Eigen::Matrix<double, 6, 6>& covariance,
                bool is_relative);
 
-  /// Pose by the map as it is now of a frame that was tracked, empty if it has none any more.
-  using PastPose = std::function<std::optional<Eigen::Isometry3d>(double timestamp)>;
+  using PastPose = InertialStarter::PastPose;
   /// The images determined the current pose, which correct() has not got, with this standard deviation of the position,
   /// as the matches determine it.
   void found(const Eigen::Isometry3d& T_camera_world, double deviation, const PastPose& past_pose);
@@ -102,13 +93,7 @@ class InertialMotion {
 
  private:
   static constexpr int required_confirmations = 10;
-  /// Standard deviations of tracked poses [m], [rad].
-  struct PoseDeviations {
-    double position = 0.0, rotation = 0.0;
-  };
 
-  void remember_frame();
-  bool is_slow_camera() const;
   Eigen::Isometry3d body_pose(const Eigen::Isometry3d& T_camera_world) const;
   Eigen::Isometry3d camera_pose(const Eigen::Isometry3d& T_world_body) const;
   InertialFilter::PoseCovariance measurement_covariance(double deviation) const;
@@ -116,14 +101,12 @@ class InertialMotion {
   void interrupt();
   void refute();
   void learn(const Eigen::Isometry3d& T_camera_world, double deviation);
-  void try_to_start(const PastPose& past_pose);
   void begin_with_known(const Eigen::Isometry3d& T_camera_world);
-  void begin_filter(const geometry::InertialStart& start, const std::vector<Eigen::Isometry3d>& poses,
-                    const std::vector<geometry::Preintegration>& motions, const std::vector<Eigen::Vector3d>& rates,
-                    const PoseDeviations& deviations);
+  void begin_filter(const FoundInertialStart& found);
 
   const std::optional<ImuCalibration> imu_;
   const bool scale_is_known_;
+  std::optional<InertialStarter> starter_;    // with an IMU
   std::optional<double> timestamp_;           // of the last frame [s]
   std::optional<InertialFilter> last_, now_;  // at the last frame, and predicted for the current one
   std::optional<Eigen::Isometry3d> anchor_;   // T_camera_world of the last frame with a pose, to which last_ belongs
@@ -138,11 +121,6 @@ class InertialMotion {
   std::optional<Eigen::Vector3d> rate_;                        // measured at the current frame [rad/s]
   std::optional<MapInertia> known_;                            // a filter begins with it
   int known_trials_ = 0;
-  // Of the start.
-  std::vector<ImuSample> samples_;
-  std::vector<double> tracked_;  // time stamps [s]
-  std::vector<double> frames_;   // of all frames, tracked or not [s]
-  double next_start_ = 0.0;      // [s]
 };
 
 }  // namespace holdfast
