@@ -56,7 +56,7 @@ FrameChains::FrameChains(const RunPath& path, const UnplacedFrames& unplaced, co
   Trajectory tracked = path.trajectory;
   std::erase_if(tracked, drifts);
   trajectory_ = path.trajectory;
-  if (!keyframes_.empty()) add_missing(unplaced, tracked);
+  add_missing(unplaced, tracked);
   for (const TimedPose& pose : trajectory_) {
     const Role placed = keyframes_.contains(pose.timestamp) ? Role::keyframe : Role::tracked;
     const bool is_missing = contains(unplaced.missing, pose.timestamp);

@@ -48,7 +48,8 @@ std::optional<FrameHistory::PastPose> FrameHistory::past_pose(double timestamp, 
   const auto found = record_from(timestamp);
   if (found == records_.end() || found->timestamp != timestamp || !map.submap_of(found->reference)) return std::nullopt;
   const KeyFrame* keyframe = map.find_keyframe(found->reference);
-  return PastPose{pose_of(*found, map), keyframe != nullptr && keyframe->frame.timestamp == timestamp};
+  return PastPose{pose_of(*found, map), keyframe != nullptr && keyframe->frame.timestamp == timestamp,
+                  found->reference};
 }
 
 void FrameHistory::withdraw(double timestamp) { records_.erase(record_from(timestamp)); }

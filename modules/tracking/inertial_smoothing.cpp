@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <vector>
@@ -47,7 +46,7 @@ class SmoothedFrames {
         Frame frame;
         frame.timestamp = timestamp;
         frame.T_camera_world = *smoothed_[i];
-        history.add_past(frame, keyframe_near(timestamp), map);
+        history.add_past(frame, reference_near(i, history, map), map);
         ++result.placed;
       }
     }
@@ -55,12 +54,17 @@ class SmoothedFrames {
   }
 
  private:
-  KeyFrameId keyframe_near(double timestamp) const {
-    const auto after = keyframes_.lower_bound(timestamp);
-    if (after == keyframes_.begin()) return after->second;
-    const auto before = std::prev(after);
-    return after != keyframes_.end() && after->first - timestamp < timestamp - before->first ? after->second
-                                                                                             : before->second;
+  /// Reference keyframe of the nearest frame that had a pose.
+  KeyFrameId reference_near(std::size_t frame, const FrameHistory& history, const Map& map) const {
+    const Trajectory& trajectory = frames_.trajectory();
+    const auto is_missing = [&](std::size_t i) { return frames_.role(i) == FrameChains::Role::missing; };
+    std::size_t before = frame, after = frame;
+    while (before > 0 && is_missing(before)) --before;
+    while (after + 1 < trajectory.size() && is_missing(after)) ++after;
+    const double time = trajectory[frame].timestamp;
+    const bool is_after_nearer = trajectory[after].timestamp - time < time - trajectory[before].timestamp;
+    const std::size_t nearest = is_missing(before) || (is_after_nearer && !is_missing(after)) ? after : before;
+    return history.past_pose(trajectory[nearest].timestamp, map)->reference;
   }
 
   /// Moves drifting keyframes, with the points that they alone observe.

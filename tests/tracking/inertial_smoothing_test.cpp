@@ -94,7 +94,7 @@ class InertialSmoothingTest : public testing::Test {
   template <class IsMissing>
   void add_frames_but(int count, IsMissing is_missing) {
     history.clear(), drifting = {};
-    inertia.emplace(*find_imu("bmi055"));
+    inertia.emplace(*find_imu("bmi055"), first_sequence);
     inertia->set_estimates(estimates(), 0);
     drifting.longest_gap = 4.0;
     for (int i = 0; i < count; ++i) {
@@ -110,8 +110,9 @@ class InertialSmoothingTest : public testing::Test {
       history.replace(pose.timestamp, pose_at(pose.timestamp, turn).inverse(), map);
   }
 
-  double turn = 0.0;        // [rad/s]
-  double unmodelled = 0.0;  // acceleration that measurements show and the camera has not [m/s^2]
+  std::uint64_t first_sequence = 0;  // of the run's keyframes
+  double turn = 0.0;                 // [rad/s]
+  double unmodelled = 0.0;           // acceleration that measurements show and the camera has not [m/s^2]
   Map map;
   KeyFrameId reference = map.add_keyframe(keyframe());
   FrameHistory history;
@@ -179,6 +180,15 @@ TEST_F(InertialSmoothingTest, FramesWithoutAPoseGetOneWithinHalfASecondOfTheFirs
   ASSERT_EQ(poses.size(), 74U);
   EXPECT_NEAR(poses.front().timestamp, 8 * frame_interval, 1e-9);
   EXPECT_NEAR(poses.back().timestamp, 81 * frame_interval, 1e-9);
+  EXPECT_LT(largest_error(), 0.005);
+}
+
+TEST_F(InertialSmoothingTest, FramesOfARunWithoutKeyframesGetAPoseInAnEarlierMap) {
+  first_sequence = 1;
+  add_frames_but(frame_count, [](int i) { return i < 5 || (i >= 30 && i < 80); });
+  EXPECT_TRUE(path_of(history, map, *inertia).keyframes.empty());
+  EXPECT_EQ(smooth_by_inertia(history, map, drifting, *inertia, *optimizer, stop).placed, 55U);
+  EXPECT_EQ(history.trajectory(map).size(), static_cast<std::size_t>(frame_count));
   EXPECT_LT(largest_error(), 0.005);
 }
 

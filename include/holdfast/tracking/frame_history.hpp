@@ -42,6 +42,7 @@ class FrameHistory {
   struct PastPose {
     Eigen::Isometry3d T_camera_world;
     bool is_keyframe;  ///< the frame is a keyframe in the map
+    KeyFrameId reference;
   };
   /// Current pose of the frame with this time stamp; empty without a pose in the map.
   std::optional<PastPose> past_pose(double timestamp, const Map& map) const;
