@@ -55,10 +55,10 @@ TEST(InertialStartSearch, PosesSecondsApartWithALargeBias) {
   const InertialStartSearch search{.smallest_deviation = 0.005, .largest_deviation = 0.02};
   const auto found = find_inertial_start(bench.poses(7, 2.0), bench.samples, bench.imu, search);
   ASSERT_TRUE(found);
-  EXPECT_LT((found->start.bias.gyroscope - bench.bias.gyroscope).norm(), 0.002);
+  EXPECT_LT((found->start.bias.gyroscope - bench.bias.gyroscope).norm(), 0.006);
   EXPECT_LT((found->start.gravity - gravity).norm(), 0.1);
   for (std::size_t i = 0; i < found->poses.size(); ++i)
-    EXPECT_LT((found->start.velocities[i] - true_state(found->poses[i].timestamp).velocity).norm(), 0.05) << i;
+    EXPECT_LT((found->start.velocities[i] - true_state(found->poses[i].timestamp).velocity).norm(), 0.1) << i;
   for (const geometry::Preintegration& motion : found->motions)
     EXPECT_LT((motion.bias().gyroscope - bench.bias.gyroscope).norm(), 0.01);
 }
