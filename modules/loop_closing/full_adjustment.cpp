@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <limits>
 
+#include "holdfast/core/median.hpp"
 #include "holdfast/interfaces/frame_observations.hpp"
 #include "map_motion.hpp"
 #include "piece_set.hpp"
@@ -118,6 +120,35 @@ void in_portions(MapMutex& mutex, std::size_t count, Function&& function) {
     const std::lock_guard lock(mutex);
     for (std::size_t i = begin; i < std::min(count, begin + portion); ++i) function(i);
   }
+}
+
+/// By pose, how much larger a solution makes the surroundings of its keyframe than they are in the map: the median
+/// ratio of the distances of its points. Nothing holds the unit of one camera's map, which changes from place to place,
+/// and with it the frames that are relative to a keyframe. Empty where observations have depth or factors hold the
+/// unit.
+std::vector<double> scale_changes(const Map& map, const BundleProblem& solution, std::span<const KeyFrameId> keyframes,
+                                  std::span<const MapPointId> points) {
+  const auto has_depth = [](const BundleProblem::Observation& seen) { return !std::isnan(seen.right_x); };
+  if (!solution.factors.empty() || std::any_of(solution.observations.begin(), solution.observations.end(), has_depth))
+    return {};
+  constexpr std::size_t fewest_ratios = 10;
+  std::vector<std::vector<double>> ratios(keyframes.size());
+  std::vector<double> all;
+  for (const BundleProblem::Observation& seen : solution.observations) {
+    const KeyFrame* keyframe = map.find_keyframe(keyframes[seen.pose]);
+    const MapPoint* point = map.find_point(points[seen.point]);
+    if (seen.outlier || keyframe == nullptr || point == nullptr) continue;
+    const double before = (keyframe->frame.T_camera_world * point->position).norm();
+    const double after = (solution.poses[seen.pose].T_camera_world * solution.points[seen.point]).norm();
+    if (!(before > 0.0) || !(after > 0.0)) continue;
+    ratios[seen.pose].push_back(after / before);
+    all.push_back(after / before);
+  }
+  if (all.empty()) return {};
+  std::vector<double> scales(keyframes.size(), upper_median(all));
+  for (std::size_t i = 0; i < scales.size(); ++i)
+    if (ratios[i].size() >= fewest_ratios) scales[i] = upper_median(ratios[i]);
+  return scales;
 }
 
 }  // namespace
@@ -320,7 +351,7 @@ void FullAdjustment::move_map() {
   std::vector<std::uint8_t> is_weak;
   for (std::size_t i = 0; i < keyframes_.size(); ++i)
     is_weak.push_back(shared[keyframes_[i].slot] < few_points && is_linked_[i] == 0 ? 1 : 0);
-  const MapMotion motion(map_, keyframes_, poses, {}, is_weak);
+  const MapMotion motion(map_, keyframes_, poses, scale_changes(map_, problem_, keyframes_, points_), is_weak);
   summary_.keyframes_carried = motion.move_keyframes(map_);
   for (std::size_t i = 0; i < keyframes_.size() && inertia_ != nullptr; ++i) {
     const KeyFrame* keyframe = map_.find_keyframe(keyframes_[i]);

@@ -107,6 +107,21 @@ std::vector<KeyFrameId> LocalMapper::refine(KeyFrameId keyframe, StageTimes& tim
   return removed;
 }
 
+void LocalMapper::fuse_whole_map(const std::atomic<bool>& stop, StageTimes& times) {
+  const StageTimer timer(times, "mapping: fusion");
+  std::vector<KeyFrameId> keyframes;
+  {
+    const std::lock_guard lock(mutex_);
+    keyframes = map_.keyframes_by_age();
+  }
+  for (const KeyFrameId id : keyframes) {
+    if (stop) break;
+    counts_.points_fused += fuse_with_neighbours(map_, mutex_, id, settings_, matcher_);
+  }
+  const std::lock_guard lock(mutex_);
+  map_.invalidate_copies();
+}
+
 void LocalMapper::make_points_from_depth(KeyFrameId id) {
   const KeyFrame& keyframe = map_.keyframe(id);
   const Frame& frame = keyframe.frame;

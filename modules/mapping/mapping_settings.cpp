@@ -60,6 +60,12 @@ void MappingSettings::describe(ParameterTable<MappingSettings>& table) {
   table.add("inertia", &S::inertia,
             "with tracking.inertia, whether inertial measurements link the keyframes in adjustments of the whole map, "
             "after loops and at the end of the run, and smooth the frames between them at its end");
+  table
+      .add(
+          "final_rounds", &S::final_rounds,
+          "rounds at the end of the run, after an adjustment of the whole map, in which its points are searched in the "
+          "neighbours of every keyframe again and the whole map is adjusted; 0 = none, and no such adjustment")
+      .range(0, 10);
 }
 
 }  // namespace holdfast

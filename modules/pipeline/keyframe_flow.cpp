@@ -454,12 +454,29 @@ void KeyframeFlow::finish() {
   if (surface_fusion_) surface_fusion_->finish();
 }
 
-void KeyframeFlow::adjust_after_last_loop() {
+void KeyframeFlow::adjust_at_end() {
+  placed_keyframes_ = adjustment_.placed_keyframes();  // of the last loop
+  const bool has_map = !parts_.localise_only && !map_.unshared().keyframes().empty();
+  const int rounds = has_map ? parts_.mapping.final_rounds : 0;
   {
     const MutexLock lock(record_mutex_);
-    if (keyframes_since_adjustment_ == 0 || interrupted_) return;
+    if (keyframes_since_adjustment_ == 0 && rounds == 0) return;
   }
-  in_background([&](StageTimes& times) { adjust_map(times); });
+  placed_keyframes_.clear();
+  const auto adjust = [this] {
+    if (interrupted_) return;
+    in_background([this](StageTimes& times) { adjust_map(times); });
+    const std::vector<double>& placed = adjustment_.placed_keyframes();
+    placed_keyframes_.insert(placed_keyframes_.end(), placed.begin(), placed.end());
+  };
+  adjust();
+  for (int round = 0; round < rounds && !interrupted_; ++round) {
+    in_background([this](StageTimes& times) {
+      const LockedStructure structure(map_);
+      mapper_.fuse_whole_map(interrupted_, times);
+    });
+    adjust();
+  }
 }
 
 void KeyframeFlow::request_stop() {

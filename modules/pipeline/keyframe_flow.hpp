@@ -82,10 +82,12 @@ class KeyframeFlow {
   /// Waits until every station has done what waits for it, and ends the threads.
   void finish();
   /// Runs one more full adjustment if keyframes were added since the last loop, which constrain it further. With
-  /// inertial measurements it runs without a loop as well.
-  void adjust_after_last_loop();
-  /// See FullAdjustment::placed_keyframes(); the threads have ended.
-  const std::vector<double>& placed_keyframes() const { return adjustment_.placed_keyframes(); }
+  /// inertial measurements or MappingSettings::final_rounds it runs without a loop as well; these rounds follow.
+  /// The threads have ended.
+  void adjust_at_end();
+  /// See FullAdjustment::placed_keyframes(): of all adjustments of adjust_at_end(), some more than once, or else of the
+  /// last one before.
+  const std::vector<double>& placed_keyframes() const { return placed_keyframes_; }
   /// Fuses every view at its final pose; the threads have ended.
   void finish_surface();
   /// Makes long adjustments end after their current iteration.
@@ -202,6 +204,7 @@ class KeyframeFlow {
   std::vector<bool> left_out_;      // of the static scene, by label
   std::deque<MappingJob> waiting_;  // they have their masks, but mapping had no room
   std::uint64_t keyframes_deferred_ = 0;
+  std::vector<double> placed_keyframes_;  // time stamps [s]
   std::atomic<bool> interrupted_ = false;
 
   mutable Mutex record_mutex_;

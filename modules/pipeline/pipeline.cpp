@@ -408,7 +408,7 @@ void Pipeline::finish() {
   }
   s.estimate_metres();
   const Trajectory before = s.inertia ? trajectory() : Trajectory();
-  s.flow.adjust_after_last_loop();
+  s.flow.adjust_at_end();
   s.smooth_frames(before);
   s.smooth_trajectory();
   s.complete_map();

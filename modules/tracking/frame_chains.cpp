@@ -76,14 +76,13 @@ std::vector<FrameChain> FrameChains::find() const {
   return chains;
 }
 
-std::optional<FrameChains::Solution> FrameChains::solve(const FrameChain& chain, Optimizer& optimizer,
-                                                        const std::atomic<bool>& stop) const {
+std::optional<BundleProblem> FrameChains::solve(const FrameChain& chain, Optimizer& optimizer,
+                                                const std::atomic<bool>& stop) const {
   BundleProblem problem = problem_of(chain);
   if (!optimizer.optimize_bundle(problem, stop).usable || stop) return std::nullopt;
   reweight(chain, problem);
-  const BundleSummary summary = optimizer.optimize_bundle(problem, stop);
-  if (!summary.usable || stop) return std::nullopt;
-  return Solution{std::move(problem), summary.final_cost};
+  if (!optimizer.optimize_bundle(problem, stop).usable || stop) return std::nullopt;
+  return problem;
 }
 
 /// Adds the missing frames that are to be placed to the trajectory, with the pose of the nearest frame.

@@ -27,11 +27,6 @@ struct FrameChain {
 class FrameChains {
  public:
   enum class Role : std::uint8_t { tracked, drifting, missing, keyframe };
-  /// The poses of a chain, those of its first frame first, and their cost.
-  struct Solution {
-    BundleProblem problem;
-    double cost = 0.0;
-  };
 
   /// `deviation_factor`: of the deviations of the measurements. `scale_is_free`: the scale is a further unknown.
   FrameChains(const RunPath& path, const UnplacedFrames& unplaced, const InertialHistory& inertia,
@@ -45,9 +40,10 @@ class FrameChains {
 
   /// The chains of the trajectory. Long ones are cut beside tracked frames, so that the cost is linear.
   std::vector<FrameChain> find() const;
-  /// Solves a chain with the first deviations, and again with those that the solution leaves. Empty if a problem has no
-  /// solution, or when stopped.
-  std::optional<Solution> solve(const FrameChain& chain, Optimizer& optimizer, const std::atomic<bool>& stop) const;
+  /// Solves a chain with the first deviations, and again with those that the solution leaves; the pose of its first
+  /// frame comes first. Empty if a problem has no solution, or when stopped.
+  std::optional<BundleProblem> solve(const FrameChain& chain, Optimizer& optimizer,
+                                     const std::atomic<bool>& stop) const;
 
  private:
   using Deviations = Eigen::Array2d;  // of a pose: position, rotation [rad]

@@ -145,9 +145,9 @@ InertialSmoothing smooth_by_inertia(FrameHistory& history, Map& map, const Unpla
   const FrameChains frames(path, unplaced, inertia, *estimates, model_factor, false);
   SmoothedFrames smoothed(frames, path.keyframes);
   for (const FrameChain& chain : frames.find()) {
-    const std::optional<FrameChains::Solution> solution = frames.solve(chain, optimizer, stop);
+    const std::optional<BundleProblem> solution = frames.solve(chain, optimizer, stop);
     if (stop) break;
-    if (solution) smoothed.take(chain, solution->problem, map);
+    if (solution) smoothed.take(chain, *solution, map);
   }
   return smoothed.write(history, map);
 }

@@ -56,6 +56,7 @@ Eigen::Vector3d rate_at(std::span<const ImuSample> samples, double time) {
 
 std::optional<FoundInertialStart> find_inertial_start(const Trajectory& poses, std::span<const ImuSample> samples,
                                                       const ImuCalibration& imu, const InertialStartSearch& search) {
+  if (samples.empty()) return std::nullopt;
   const auto unbiased_motions = preintegrate_between(poses, samples, imu.noise, {});
   if (!unbiased_motions) return std::nullopt;
   FoundInertialStart found{.start = {}, .poses = poses, .motions = {}, .rates = {}, .deviations = {}};
@@ -66,7 +67,9 @@ std::optional<FoundInertialStart> find_inertial_start(const Trajectory& poses, s
   }
   geometry::InertialStartOptions options;
   options.estimate_scale = search.estimate_scale;
+  options.largest_direction_deviation = search.largest_direction_deviation;
   options.largest_scale_deviation = search.largest_scale_deviation;
+  options.largest_velocity_deviation = search.largest_velocity_deviation;
   options.mounting_deviation = nominal_mounting_deviation;
   options.time_offset_deviation = nominal_time_offset_deviation;
   const auto solve = [&](std::vector<geometry::Preintegration> motions) {

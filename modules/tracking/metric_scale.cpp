@@ -49,15 +49,16 @@ std::vector<Trajectory> find_windows(const Trajectory& trajectory, const Inertia
 
 /// Estimates of the window that determines the scale best.
 std::optional<MapInertia> start_by_trajectory(const Trajectory& trajectory, const InertialHistory& inertia) {
-  if (trajectory.empty()) return std::nullopt;
-  const std::vector<ImuSample> samples =
-      covering(inertia.samples(), trajectory.front().timestamp, trajectory.back().timestamp, inertia.imu());
   InertialStartSearch search;
   search.estimate_scale = true;
   search.smallest_deviation = smallest_pose_deviation;
   search.largest_scale_deviation = largest_window_deviation;
+  // A scale that is as uncertain leaves velocities and gravity uncertain, too.
+  search.largest_direction_deviation = search.largest_velocity_deviation = std::numeric_limits<double>::infinity();
   std::optional<MapInertia> best;
   for (const Trajectory& window : find_windows(trajectory, inertia)) {
+    const std::vector<ImuSample> samples =
+        covering(inertia.samples(), window.front().timestamp, window.back().timestamp, inertia.imu());
     const std::optional<FoundInertialStart> found = find_inertial_start(window, samples, inertia.imu(), search);
     if (!found) continue;
     const geometry::InertialStart& start = found->start;
@@ -81,27 +82,28 @@ std::optional<MapInertia> start_by_trajectory(const Trajectory& trajectory, cons
 
 /// Relative standard deviation of the scale of a solution: by the increase of the cost where another scale is fixed,
 /// times the root of the mean squared residual if that is larger than 1. Empty if a problem has no solution.
-std::optional<double> deviation_of_scale(const FrameChains::Solution& solution, Optimizer& optimizer,
+std::optional<double> deviation_of_scale(const BundleProblem& solution, Optimizer& optimizer,
                                          const std::atomic<bool>& stop) {
   constexpr double step = 0.01;
   bool is_usable = true;
   const auto cost_at = [&](double factor) {
-    BundleProblem problem = solution.problem;
+    BundleProblem problem = solution;
     problem.factors.scale *= factor, problem.factors.scale_fixed = true;
     const BundleSummary summary = optimizer.optimize_bundle(problem, stop);
     is_usable = is_usable && summary.usable && !stop;
     return summary.final_cost;
   };
-  const double larger = cost_at(std::exp(step)), smaller = cost_at(std::exp(-step));
-  const double increase = 0.5 * (larger + smaller) - solution.cost;
+  // The solution converges further as the others do.
+  const double cost = cost_at(1.0), larger = cost_at(std::exp(step)), smaller = cost_at(std::exp(-step));
+  const double increase = 0.5 * (larger + smaller) - cost;
   if (!is_usable || !(increase > 0.0)) return std::nullopt;
-  const BundleFactors& factors = solution.problem.factors;
+  const BundleFactors& factors = solution.factors;
   const double residuals = 6.0 * static_cast<double>(factors.pose_priors.size() + factors.motion_priors.size()) +
                            15.0 * static_cast<double>(factors.inertial.size());
   constexpr double direction_and_scale = 3.0;
-  const double unknowns = 6.0 * static_cast<double>(solution.problem.poses.size()) +
+  const double unknowns = 6.0 * static_cast<double>(solution.poses.size()) +
                           9.0 * static_cast<double>(factors.motions.size()) + direction_and_scale;
-  const double mean_chi_square = 2.0 * solution.cost / std::max(1.0, residuals - unknowns);
+  const double mean_chi_square = 2.0 * cost / std::max(1.0, residuals - unknowns);
   return step / std::sqrt(2.0 * increase) * std::sqrt(std::max(1.0, mean_chi_square));
 }
 
@@ -119,14 +121,13 @@ std::optional<ScaleEstimate> estimate_scale(const RunPath& path, const UnplacedF
   std::vector<Estimate> found;
   double information = 0.0, logarithm = 0.0;
   for (const FrameChain& chain : frames.find()) {
-    const std::optional<FrameChains::Solution> solution = frames.solve(chain, optimizer, stop);
+    const std::optional<BundleProblem> solution = frames.solve(chain, optimizer, stop);
     if (stop) return std::nullopt;
     if (!solution) continue;
     const std::optional<double> deviation = deviation_of_scale(*solution, optimizer, stop);
     if (stop) return std::nullopt;
     if (!deviation) continue;
-    found.push_back({std::log(solution->problem.factors.scale), 1.0 / (*deviation * *deviation),
-                     solution->problem.factors.gravity});
+    found.push_back({std::log(solution->factors.scale), 1.0 / (*deviation * *deviation), solution->factors.gravity});
     information += found.back().weight;
     logarithm += found.back().weight * found.back().logarithm;
   }

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "holdfast/plugin/registry.hpp"
 #include "loop_closing/map_checks.hpp"
 #include "loop_closing/ring_world.hpp"
@@ -277,6 +280,34 @@ std::vector<KeyFrameId> make_island(Map& map) {
     }
   for (const KeyFrameId id : keyframes) map.update_covisibility(id);
   return island;
+}
+
+/// Makes the map twice as large.
+class Doubling final : public Optimizer {
+ public:
+  BundleSummary optimize_bundle(BundleProblem& problem, const std::atomic<bool>&) override {
+    for (BundleProblem::Pose& pose : problem.poses) pose.T_camera_world.translation() *= 2.0;
+    for (Eigen::Vector3d& point : problem.points) point *= 2.0;
+    return {.usable = true};
+  }
+  GraphSummary optimize_pose_graph(PoseGraphProblem&) override { return {}; }
+};
+
+TEST_F(FullAdjustmentTest, FramesFollowTheUnitOfOneCamerasMapAndNotThatOfDepth) {
+  Doubling doubling;
+  FullAdjustment doubled{LoopClosingSettings{}, {map, map_mutex, structure_mutex}, doubling};
+  for (const bool has_depth : {true, false}) {
+    for (const KeyFrameId id : map.keyframes().ids()) {
+      KeyFrame& keyframe = map.keyframe(id);
+      keyframe.scale = 1.0;
+      if (!has_depth)
+        std::fill(keyframe.frame.right_x.begin(), keyframe.frame.right_x.end(),
+                  std::numeric_limits<float>::quiet_NaN());
+    }
+    EXPECT_TRUE(doubled.run().applied);
+    for (const KeyFrameId id : map.keyframes().ids())
+      EXPECT_NEAR(map.keyframe(id).scale, has_depth ? 1.0 : 2.0, 1e-9) << has_depth;
+  }
 }
 
 TEST_F(FullAdjustmentTest, AnIslandOfKeyframesKeepsItsPlace) {

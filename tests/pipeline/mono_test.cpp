@@ -19,7 +19,8 @@ constexpr double frame_rate = 30.0;
 
 class MonoTest : public ::testing::Test {
  protected:
-  static Pipeline make(const Camera& camera, const TrackingSettings& tracking, bool threaded) {
+  static Pipeline make(const Camera& camera, const TrackingSettings& tracking, bool threaded,
+                       const MappingSettings& mapping = {}) {
     RunSettings run;
     run.mode = threaded ? RunMode::threaded : RunMode::sequential;
     return PipelineBuilder()
@@ -28,6 +29,7 @@ class MonoTest : public ::testing::Test {
         .features(OrbSettings{.count = 1000})
         .optimizer(SchurSettings{})
         .tracking(tracking)
+        .mapping(mapping)
         .run(run)
         .build();
   }
@@ -210,6 +212,31 @@ TEST_F(MonoTest, FramesBeforeTheStartAreLocatedInTheFinishedMap) {
     const std::size_t located = is_interrupted ? 0 : std::min(kept, without_pose);
     EXPECT_EQ(pipeline.loss_record().located_late, located);
     EXPECT_EQ(pipeline.trajectory().size(), truth_.size() - without_pose + located);
+    std::size_t poses = 0;
+    EXPECT_LT(error(pipeline.trajectory(), 0.0, poses), 0.01);
+  }
+}
+
+/// Each round finds observations that the adjustment before it has brought within reach. An interrupted run has none.
+TEST_F(MonoTest, FinalRoundsSearchThePointsOfTheWholeMapAgain) {
+  for (const bool is_interrupted : {false, true}) {
+    SCOPED_TRACE(is_interrupted);
+    next_ = 0;
+    truth_.clear();
+    Pipeline pipeline = make(simulator_.camera(), {}, false, {.final_rounds = 2});
+    for (std::uint64_t index = 0; index < 120; ++index) feed(pipeline, index);
+    if (is_interrupted) pipeline.interrupt();
+    pipeline.finish();
+    const LoopRecord record = pipeline.loop_record();
+    EXPECT_TRUE(record.loops.empty());
+    ASSERT_EQ(record.adjustments.size(), is_interrupted ? 0U : 3U);
+    for (std::size_t i = 0; i < record.adjustments.size(); ++i) {
+      const FullAdjustmentSummary& now = record.adjustments[i];
+      EXPECT_TRUE(now.applied);
+      if (i == 0) continue;
+      const FullAdjustmentSummary& before = record.adjustments[i - 1];
+      EXPECT_GT(now.observations, before.observations - before.bundle.outliers) << i;
+    }
     std::size_t poses = 0;
     EXPECT_LT(error(pipeline.trajectory(), 0.0, poses), 0.01);
   }

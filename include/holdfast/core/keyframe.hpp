@@ -27,8 +27,8 @@ struct KeyFrame {
   std::vector<CovisibilityEdge> covisible;  ///< by decreasing weight, equal weights by increasing sequence
   KeyFrameId parent;                        ///< in the spanning tree; invalid for the first keyframe of a submap
   std::vector<KeyFrameId> children;         ///< in the spanning tree, in order of insertion
-  /// Accumulated scale correction of this keyframe by monocular loop closures (1 otherwise). It scales the translations
-  /// of poses stored relative to this keyframe. It is not saved in map files.
+  /// Accumulated scale correction of this keyframe by loops and full adjustments of one camera's map (1 otherwise). It
+  /// scales the translations of poses stored relative to this keyframe. It is not saved in map files.
   double scale = 1.0;
   std::vector<KeyFrameId> loop_edges;  ///< other ends of closed loops; a keyframe with one is never culled
   /// Direction of gravity in the frame of the camera, a unit vector, as tracking knew it by inertial measurements when

@@ -70,6 +70,12 @@ class LocalMapper {
   /// ...".
   std::vector<KeyFrameId> refine(KeyFrameId keyframe, StageTimes& times);
 
+  /// Searches the points of every keyframe in its neighbours and theirs in it, as refine() does for one, the oldest
+  /// keyframe first: after an adjustment of the whole map, observations come within reach that local adjustments
+  /// removed. Acquires the lock of the map for short intervals; the caller holds the structure mutex (SharedMap).
+  /// `stop` ends it after a keyframe. Adds the stage "mapping: fusion".
+  void fuse_whole_map(const std::atomic<bool>& stop, StageTimes& times);
+
   /// Resets the mapper after the map was cleared, except counts(). No other thread may refine.
   void forget_map() {
     recent_points_.clear();

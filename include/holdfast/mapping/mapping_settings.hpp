@@ -37,6 +37,9 @@ struct MappingSettings {
   /// adjustments of the whole map, after loops and at the end of the run, and smooth the frames between them at its
   /// end.
   bool inertia = true;
+  /// Rounds at the end of a run, after an adjustment of the whole map: its points are searched again in the neighbours
+  /// of every keyframe, whose poses now are better than when they were made, and the whole map is adjusted.
+  int final_rounds = 0;
 
   static void describe(ParameterTable<MappingSettings>& table);
 };

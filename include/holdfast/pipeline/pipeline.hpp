@@ -117,9 +117,10 @@ class Pipeline {
   /// result. Rethrows exceptions of the pipeline's threads.
   FrameResult feed(const SensorFrame& frame);
   /// Ends the run: waits until the threads have processed their queues, runs full bundle adjustment again if the map
-  /// has grown since the last loop (unless interrupted), scales the map of one camera to metres if inertial
-  /// measurements gave the scale, and notifies the observers. feed() must not be called afterwards; a second call does
-  /// nothing, also after an exception. Rethrows exceptions of the pipeline's threads.
+  /// has grown since the last loop, or MappingSettings::final_rounds says so (unless interrupted), scales the map of
+  /// one camera to metres if inertial measurements gave the scale, and notifies the observers. feed() must not be
+  /// called afterwards; a second call does nothing, also after an exception. Rethrows exceptions of the pipeline's
+  /// threads.
   void finish();
   /// Ends running bundle adjustments after their current iteration, and the waits of observers (Observer::interrupt()),
   /// both for the rest of the run: a viewer no longer pauses, and finish() neither adjusts nor smooths again, and

@@ -41,8 +41,8 @@ class FrameHistory {
   /// Current pose of a tracked frame.
   struct PastPose {
     Eigen::Isometry3d T_camera_world;
-    bool is_keyframe;  ///< the frame is a keyframe in the map
-    KeyFrameId reference;
+    bool is_keyframe;      ///< the frame is a keyframe in the map
+    KeyFrameId reference;  ///< the keyframe to which the pose is relative
   };
   /// Current pose of the frame with this time stamp; empty without a pose in the map.
   std::optional<PastPose> past_pose(double timestamp, const Map& map) const;

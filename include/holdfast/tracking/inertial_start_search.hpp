@@ -25,7 +25,10 @@ struct InertialStartSearch {
   bool estimate_scale = false;
   /// Standard deviations of positions that are tried: the first and the last of 1, 2, 5, 10 and 20 mm [m].
   double smallest_deviation = 0.002, largest_deviation = 0.01;
-  double largest_scale_deviation = 0.02;  ///< relative; of a start that is found
+  /// Standard deviations of a start that is found, at most (geometry::InertialStartOptions).
+  double largest_direction_deviation = geometry::InertialStartOptions().largest_direction_deviation;
+  double largest_scale_deviation = geometry::InertialStartOptions().largest_scale_deviation;
+  double largest_velocity_deviation = geometry::InertialStartOptions().largest_velocity_deviation;
 };
 
 /// An inertial start, and what it was found from.
