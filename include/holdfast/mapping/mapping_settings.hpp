@@ -38,7 +38,7 @@ struct MappingSettings {
   /// end.
   bool inertia = true;
   /// Rounds at the end of a run, after an adjustment of the whole map: its points are searched again in the neighbours
-  /// of every keyframe, whose poses now are better than when they were made, and the whole map is adjusted.
+  /// of every keyframe, whose poses now are better than when they were made, and the whole map is adjusted; 0 = none.
   int final_rounds = 0;
 
   static void describe(ParameterTable<MappingSettings>& table);
