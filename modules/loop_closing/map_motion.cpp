@@ -27,21 +27,24 @@ MapMotion::MapMotion(const Map& map, std::span<const KeyFrameId> keyframes, std:
     Eigen::Isometry3d& motion = motion_[id.slot];
     double& scale = scale_[id.slot];
     // With a scale, new camera = scale * old camera for every point; a pose keeps its rotation and unit of length.
-    Eigen::Isometry3d scaled_pose = old_pose;
+    const auto scaled_pose = [&old_pose](double factor) {
+      Eigen::Isometry3d scaled = old_pose;
+      scaled.translation() *= factor;
+      return scaled;
+    };
     const Eigen::Isometry3d& with_parent = keyframe.parent.valid() ? motion_[keyframe.parent.slot] : before;
+    const double scale_of_parent = keyframe.parent.valid() ? scale_[keyframe.parent.slot] : scale_before;
     const bool has_diverged = given[id.slot] != nullptr && is_weakly_constrained[id.slot] != 0 &&
                               keyframe.parent.valid() &&
-                              geometry::exceeds(*given[id.slot] * with_parent * old_pose.inverse(),
+                              geometry::exceeds(*given[id.slot] * with_parent * scaled_pose(scale_of_parent).inverse(),
                                                 divergence_from_parent, divergence_from_parent);
     if (given[id.slot] != nullptr && !has_diverged) {
-      scaled_pose.translation() *= scale;
       poses_.push_back({id, *given[id.slot], false, scale});
-      motion = geometry::orthonormalised(given[id.slot]->inverse() * scaled_pose);
+      motion = geometry::orthonormalised(given[id.slot]->inverse() * scaled_pose(scale));
     } else {
       motion = with_parent;
-      scale = keyframe.parent.valid() ? scale_[keyframe.parent.slot] : scale_before;
-      scaled_pose.translation() *= scale;
-      poses_.push_back({id, geometry::orthonormalised(scaled_pose * motion.inverse()), true, scale});
+      scale = scale_of_parent;
+      poses_.push_back({id, geometry::orthonormalised(scaled_pose(scale) * motion.inverse()), true, scale});
     }
     before = motion;
     scale_before = scale;

@@ -455,14 +455,15 @@ void KeyframeFlow::finish() {
 }
 
 void KeyframeFlow::adjust_at_end() {
-  placed_keyframes_ = adjustment_.placed_keyframes();  // of the last loop
   const bool has_map = !parts_.localise_only && !map_.unshared().keyframes().empty();
   const int rounds = has_map ? parts_.mapping.final_rounds : 0;
   {
     const MutexLock lock(record_mutex_);
-    if (keyframes_since_adjustment_ == 0 && rounds == 0) return;
+    if (keyframes_since_adjustment_ == 0 && rounds == 0) {
+      placed_keyframes_ = adjustment_.placed_keyframes();  // of the last loop
+      return;
+    }
   }
-  placed_keyframes_.clear();
   const auto adjust = [this] {
     if (interrupted_) return;
     in_background([this](StageTimes& times) { adjust_map(times); });

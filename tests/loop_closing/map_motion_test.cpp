@@ -122,6 +122,23 @@ TEST_F(MapMotionTest, AKeyframeWithoutAPoseIsCarriedWithItsParentInItsScale) {
   for (std::size_t p = 0; p < before.size(); ++p) EXPECT_TRUE(seen(3)[p].isApprox(0.7 * before[p], 1e-9));
 }
 
+/// Whether a keyframe of few points fled is judged in the new unit: a map that only grew has no such keyframe.
+TEST_F(MapMotionTest, AWeakKeyframeIsComparedWithItsParentInTheParentsScale) {
+  const std::vector<double> scales(4, 3.0);
+  const std::vector<std::uint8_t> is_weak = {0, 0, 0, 1};
+  std::vector<Eigen::Isometry3d> poses;
+  for (const KeyFrameId id : ids_) {
+    poses.push_back(map_.keyframe(id).frame.T_camera_world);
+    poses.back().translation() *= 3.0;
+  }
+  std::vector<Eigen::Isometry3d> fled = poses;
+  fled[3].translation().x() += 0.5;
+  const MapMotion growth(map_, ids_, poses, scales, is_weak), flight(map_, ids_, fled, scales, is_weak);
+  EXPECT_EQ(growth.move_keyframes(map_), 0);
+  EXPECT_TRUE(map_.pose_of(ids_[3]).isApprox(poses[3], 1e-12));
+  EXPECT_EQ(flight.move_keyframes(map_), 1);
+}
+
 TEST_F(MapMotionTest, ScalesMultiplyFromLoopToLoop) {
   std::vector<Eigen::Isometry3d> poses;
   for (const KeyFrameId id : ids_) poses.push_back(map_.keyframe(id).frame.T_camera_world);
