@@ -454,14 +454,14 @@ void KeyframeFlow::finish() {
   if (surface_fusion_) surface_fusion_->finish();
 }
 
-void KeyframeFlow::adjust_at_end() {
+bool KeyframeFlow::adjust_at_end() {
   const bool has_map = !parts_.localise_only && !map_.unshared().keyframes().empty();
   const int rounds = has_map ? parts_.mapping.final_rounds : 0;
   {
     const MutexLock lock(record_mutex_);
     if (keyframes_since_adjustment_ == 0 && rounds == 0) {
       placed_keyframes_ = adjustment_.placed_keyframes();  // of the last loop
-      return;
+      return false;
     }
   }
   const auto adjust = [this] {
@@ -478,6 +478,7 @@ void KeyframeFlow::adjust_at_end() {
     });
     adjust();
   }
+  return true;
 }
 
 void KeyframeFlow::request_stop() {

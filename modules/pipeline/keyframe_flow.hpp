@@ -83,8 +83,8 @@ class KeyframeFlow {
   void finish();
   /// Runs one more full adjustment if keyframes were added since the last loop, which constrain it further. With
   /// inertial measurements or MappingSettings::final_rounds it runs without a loop as well; these rounds follow.
-  /// The threads have ended.
-  void adjust_at_end();
+  /// The threads have ended. Returns whether there was something to do.
+  bool adjust_at_end();
   /// See FullAdjustment::placed_keyframes(): of all adjustments of adjust_at_end(), some more than once, or else of the
   /// last one before.
   const std::vector<double>& placed_keyframes() const { return placed_keyframes_; }

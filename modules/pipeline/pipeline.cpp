@@ -165,8 +165,10 @@ struct Pipeline::State {
   }
   /// Estimates the unit of one camera's map by all inertial measurements. The map can be read meanwhile.
   void estimate_metres() HOLDFAST_EXCLUDES(map);
-  /// After the last adjustment of the map, which places keyframes. `before`: the trajectory before it.
-  void smooth_frames(const Trajectory& before) HOLDFAST_EXCLUDES(map);
+  /// Adjusts the map a last time, which frames follow.
+  void adjust_at_end() HOLDFAST_EXCLUDES(map);
+  /// After the last adjustment of the map, which places keyframes.
+  void smooth_by_inertia() HOLDFAST_EXCLUDES(map);
   void smooth_trajectory() HOLDFAST_EXCLUDES(map);
   /// Scales the finished map to metres and classifies its points.
   void complete_map() HOLDFAST_EXCLUDES(map);
@@ -316,7 +318,20 @@ void Pipeline::State::estimate_metres() {
   inertia->set_estimates(estimates, inertia->submap());
 }
 
-void Pipeline::State::smooth_frames(const Trajectory& before) {
+void Pipeline::State::adjust_at_end() {
+  // What a loop left is little, and frames keep their poses relative to their reference keyframes.
+  const bool is_large = inertia || parts.mapping.final_rounds > 0;
+  PlacedFrames before;
+  if (is_large) {
+    const LockedMap locked(map, LockPriority::background);
+    before = tracker.placed_frames(locked);
+  }
+  if (!flow.adjust_at_end() || !is_large || is_interrupted) return;
+  const LockedMap locked(map, LockPriority::background);
+  tracker.follow_keyframes(locked, before);
+}
+
+void Pipeline::State::smooth_by_inertia() {
   if (!inertia) return;
   const std::vector<double> placed = flow.placed_keyframes();
   std::erase_if(unplaced.keyframes,
@@ -325,7 +340,6 @@ void Pipeline::State::smooth_frames(const Trajectory& before) {
   const std::optional<MapInertia> adjusted = inertia->estimates();
   if (adjusted && locked->inertia()) locked->set_inertia(adjusted);  // belongs to the poses, interrupted or not
   if (is_interrupted) return;
-  if (!placed.empty()) tracker.follow_keyframes(locked, before);
   unplaced.longest_gap = parts.tracking.inertial_time;
   for (const double stamp : stamps)
     if (!tracker.pose_at(locked, stamp)) unplaced.missing.push_back(stamp);
@@ -407,9 +421,8 @@ void Pipeline::finish() {
     s.flow.keep_submap(locked, submap);
   }
   s.estimate_metres();
-  const Trajectory before = s.inertia ? trajectory() : Trajectory();
-  s.flow.adjust_at_end();
-  s.smooth_frames(before);
+  s.adjust_at_end();
+  s.smooth_by_inertia();
   s.smooth_trajectory();
   s.complete_map();
   s.flow.finish_surface();

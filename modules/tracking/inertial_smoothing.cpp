@@ -98,31 +98,6 @@ class SmoothedFrames {
 
 }  // namespace
 
-void follow_keyframes(FrameHistory& history, const Map& map, const Trajectory& before) {
-  const Trajectory after = history.trajectory(map);
-  if (after.size() != before.size()) return;
-  const auto moved = [&](std::size_t keyframe, std::size_t i) {
-    return after[keyframe].T_world_camera * before[keyframe].T_world_camera.inverse() * before[i].T_world_camera;
-  };
-  constexpr double longest = 2.0;  // s
-  std::optional<std::size_t> first;
-  for (std::size_t second = 0; second < after.size(); ++second) {
-    const auto pose = history.past_pose(after[second].timestamp, map);
-    if (!pose || !pose->is_keyframe) continue;
-    if (first && after[second].timestamp - after[*first].timestamp > longest) first.reset();
-    for (std::size_t i = first.value_or(second) + 1; i < second; ++i) {
-      const double share =
-          (after[i].timestamp - after[*first].timestamp) / (after[second].timestamp - after[*first].timestamp);
-      const Eigen::Isometry3d a = moved(*first, i), b = moved(second, i);
-      const Eigen::Quaterniond rotation = Eigen::Quaterniond(a.linear()).slerp(share, Eigen::Quaterniond(b.linear()));
-      Eigen::Isometry3d T_world_camera(rotation);
-      T_world_camera.translation() = (1.0 - share) * a.translation() + share * b.translation();
-      history.replace(after[i].timestamp, T_world_camera.inverse(), map);
-    }
-    first = second;
-  }
-}
-
 RunPath path_of(const FrameHistory& history, const Map& map, const InertialHistory& inertia) {
   RunPath path;
   if (map.keyframes().size() == 0 || history.main_submap(map) != inertia.submap()) return path;

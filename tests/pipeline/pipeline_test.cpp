@@ -6,6 +6,7 @@
 #include <chrono>
 #include <future>
 #include <limits>
+#include <utility>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/plugin/registry.hpp"
@@ -250,6 +251,36 @@ TEST(Pipeline, FindsItsPlaceInALoadedMap) {
   }
   EXPECT_EQ(pipeline.map().keyframes().size(), keyframes);
   EXPECT_EQ(pipeline.map().points().size(), points);
+}
+
+/// Keyframes of the earlier run are adjusted as well; frames of this run follow.
+TEST(Pipeline, SearchesTheWholeMapAgainAfterThreadsAlsoOneThatWasLoaded) {
+  test::PointWorld world(find_camera("tum_fr1").value());
+  Map map;
+  for (const double begin : {0.0, 100.0}) {
+    SCOPED_TRACE(begin);
+    PipelineParts parts = parts_for(world, 0.3);
+    parts.run.mode = RunMode::threaded;
+    parts.mapping.final_rounds = 1;
+    parts.loop_detector = std::make_unique<test::BruteForceDetector>();
+    const std::size_t earlier = map.keyframes().size();
+    parts.map = std::exchange(map, {});
+    Pipeline pipeline(std::move(parts));
+    for (int i = 0; i < 60; ++i)
+      pipeline.feed(world.frame(static_cast<std::uint64_t>(i), begin + i / 30.0, test::path_pose(i / 30.0)));
+    pipeline.finish();
+    const LoopRecord record = pipeline.loop_record();
+    ASSERT_EQ(record.adjustments.size(), 2U);
+    for (const FullAdjustmentSummary& adjustment : record.adjustments) EXPECT_TRUE(adjustment.applied);
+    EXPECT_GE(static_cast<std::size_t>(record.adjustments.back().keyframes), earlier);
+    const Trajectory trajectory = pipeline.trajectory();
+    ASSERT_EQ(trajectory.size(), 60U);
+    for (const TimedPose& pose : trajectory)
+      EXPECT_LT((pose.T_world_camera.translation() - test::path_pose(pose.timestamp - begin).translation()).norm(),
+                0.01)
+          << pose.timestamp;
+    map = pipeline.take_map();
+  }
 }
 
 TEST(Pipeline, WaitsForAFrameWithDepth) {

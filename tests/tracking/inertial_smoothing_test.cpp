@@ -126,31 +126,6 @@ class InertialSmoothingTest : public testing::Test {
   }();
 };
 
-/// An adjustment that changes the scale: frames between two keyframes follow both, those behind the last one that.
-TEST(FollowKeyframes, FramesLieBetweenTheirKeyframesAsBefore) {
-  Map map;
-  FrameHistory history;
-  KeyFrameId last;
-  const auto position = [](int i) { return Eigen::Vector3d(0.1 * i, 0.02 * i, 0.0); };
-  for (int i = 0; i < 25; ++i) {
-    Frame frame;
-    frame.timestamp = frame_interval * i;
-    frame.T_camera_world = Eigen::Isometry3d(Eigen::Translation3d(-position(i)));
-    if (i % 10 == 0) last = map.add_keyframe(frame);
-    history.add(frame, last, map);
-    if (i % 10 == 0) history.became_keyframe(last, frame.timestamp);
-  }
-  const Trajectory before = history.trajectory(map);
-  for (const KeyFrameId id : map.keyframes_by_age()) map.keyframe(id).frame.T_camera_world.translation() *= 1.02;
-  follow_keyframes(history, map, before);
-  const Trajectory after = history.trajectory(map);
-  ASSERT_EQ(after.size(), 25U);
-  for (int i = 0; i < 25; ++i) {
-    const Eigen::Vector3d moved = position(i) + 0.02 * position(std::min(i, 20));
-    EXPECT_LT((after[static_cast<std::size_t>(i)].T_world_camera.translation() - moved).norm(), 1e-9) << i;
-  }
-}
-
 TEST_F(InertialSmoothingTest, FramesOfABridgeFollowTheFramesOnBothSides) {
   EXPECT_NEAR(largest_error(), 0.15, 1e-6);
   EXPECT_EQ(smooth(), 99U) << "all but the keyframe";

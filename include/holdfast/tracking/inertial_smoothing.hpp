@@ -36,13 +36,6 @@ struct InertialSmoothing {
   std::size_t placed = 0;    ///< frames that had no pose
 };
 
-/// Moves the frames between keyframes as an adjustment of the map has moved the keyframes before and after them:
-/// between both corrections, by time. Relative to their reference keyframe alone, frames keep its old surroundings, of
-/// another scale where the adjustment has corrected that. Frames between keyframes more than two seconds apart stay as
-/// they are: they were tracked in a part of the map that is older. `before`: the trajectory of this history before the
-/// adjustment.
-void follow_keyframes(FrameHistory& history, const Map& map, const Trajectory& before);
-
 /// Estimates the poses of frames between keyframes again, at the end of a run: a fixed-interval smoother (Forster et
 /// al. 2017, section VII; Campos et al. 2020), whose states are all frames that inertial measurements link. Tracked
 /// frames have their poses as priors, with deviations estimated from a first solution; keyframes have priors of half

@@ -12,6 +12,7 @@
 #include "holdfast/core/stage_times.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/tracking/first_pose.hpp"
+#include "holdfast/tracking/frame_following.hpp"
 #include "holdfast/tracking/frame_tracker.hpp"
 #include "holdfast/tracking/health_judge.hpp"
 #include "holdfast/tracking/inertial_smoothing.hpp"
@@ -68,8 +69,11 @@ class Tracker {
   /// others in the map.
   void finish(const MapAccess&, StageTimes& times, const std::atomic<bool>& stop) { recovery_.finish(times, stop); }
 
-  /// Moves frames as the last adjustment moved the keyframes before and after them (holdfast::follow_keyframes()).
-  void follow_keyframes(const MapAccess& map, const Trajectory& before) {
+  PlacedFrames placed_frames(const MapAccess& map) const {
+    return holdfast::placed_frames(context_.history, map.map());
+  }
+  /// Moves frames as the last adjustments moved the keyframes before and after them (frame_following.hpp).
+  void follow_keyframes(const MapAccess& map, const PlacedFrames& before) {
     holdfast::follow_keyframes(context_.history, map.map(), before);
   }
   RunPath path_of_run(const MapAccess& map, const InertialHistory& inertia) const {
