@@ -319,16 +319,16 @@ void Pipeline::State::estimate_metres() {
 }
 
 void Pipeline::State::adjust_at_end() {
-  // What a loop left is little, and frames keep their poses relative to their reference keyframes.
+  // After a loop's own adjustment the last one changes little: frames then stay relative to their reference keyframes.
   const bool is_large = inertia || parts.mapping.final_rounds > 0;
   PlacedFrames before;
   if (is_large) {
     const LockedMap locked(map, LockPriority::background);
     before = tracker.placed_frames(locked);
   }
-  if (!flow.adjust_at_end() || !is_large || is_interrupted) return;
+  if (!flow.adjust_at_end() || !is_large) return;
   const LockedMap locked(map, LockPriority::background);
-  tracker.follow_keyframes(locked, before);
+  tracker.follow_keyframes(locked, before);  // also where it was interrupted after an adjustment
 }
 
 void Pipeline::State::smooth_by_inertia() {

@@ -11,8 +11,10 @@ PlacedFrames placed_frames(const FrameHistory& history, const Map& map) {
   PlacedFrames frames;
   frames.trajectory = history.trajectory(map);
   frames.scales.reserve(frames.trajectory.size());
-  for (const TimedPose& pose : frames.trajectory)
-    frames.scales.push_back(map.scale_of(history.past_pose(pose.timestamp, map)->reference));
+  for (const TimedPose& pose : frames.trajectory) {
+    const auto past = history.past_pose(pose.timestamp, map);
+    frames.scales.push_back(past ? map.scale_of(past->reference) : 1.0);
+  }
   return frames;
 }
 

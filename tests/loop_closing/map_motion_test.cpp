@@ -122,7 +122,8 @@ TEST_F(MapMotionTest, AKeyframeWithoutAPoseIsCarriedWithItsParentInItsScale) {
   for (std::size_t p = 0; p < before.size(); ++p) EXPECT_TRUE(seen(3)[p].isApprox(0.7 * before[p], 1e-9));
 }
 
-/// Whether a keyframe of few points fled is judged in the new unit: a map that only grew has no such keyframe.
+/// A pose that differs from that relative to the parent only by the growth of the map is kept; one that differs more is
+/// rejected.
 TEST_F(MapMotionTest, AWeakKeyframeIsComparedWithItsParentInTheParentsScale) {
   const std::vector<double> scales(4, 3.0);
   const std::vector<std::uint8_t> is_weak = {0, 0, 0, 1};
