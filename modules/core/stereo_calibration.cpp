@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace holdfast {
@@ -18,42 +19,64 @@ double huber_weight(double deviations) {
 
 constexpr double minimum_step = 0.02;  // px, worth the correction of all keyframes
 
-/// Brings an error in use up to date: `found`, with its standard deviation, where 1 displaces something by `effect` px.
-/// An error begins to be used if it is significant, and stays in use.
-void use(double found, double sigma, double effect, bool& is_used, double& used) {
+/// Whether a change of an error, with its standard deviation, is worth to be corrected, where 1 displaces something by
+/// `effect` px.
+bool is_relevant(double change, double sigma, double effect) {
   constexpr double significance = 4.0;  // standard deviations
-  const double step = std::abs(found - used) * effect;
-  const bool begins = step > StereoCalibration::minimum_shift && std::abs(found - used) > significance * sigma;
-  if (!begins && !(is_used && step > minimum_step)) return;
+  return std::abs(change) * effect > StereoCalibration::minimum_shift && std::abs(change) > significance * sigma;
+}
+
+/// Brings an error in use up to date. An error begins to be used if it is relevant, and stays in use.
+void use(double found, double sigma, double effect, bool& is_used, double& used) {
+  const bool begins = is_relevant(found - used, sigma, effect);
+  if (!begins && !(is_used && std::abs(found - used) * effect > minimum_step)) return;
   is_used = true;
   used = found;
 }
 
-Eigen::Vector4d row_terms(double x, double y) { return {1.0, x, y, x * y}; }
-/// c and q of ColumnEstimate.
-Eigen::Vector2d columns_of(const PairErrors& errors, double fx) {
-  const double turn = fx * errors.rotation.y();
-  return {turn + errors.column_offset, turn};
+// The unknowns, in normalised image coordinates; `product` is that of PairErrors::row_product(), `constant` and
+// `quadratic` are c and q of ColumnEstimate.
+enum Unknown : Eigen::Index { pitch, roll, ratio, radial, product, constant, quadratic };
+constexpr std::array<Eigen::Index, 4> unknowns_of_columns{constant, quadratic, ratio, radial};
+
+/// Mean of x^power from `first` to `last`.
+double mean_power(double first, double last, int power) {
+  return (std::pow(last, power + 1) - std::pow(first, power + 1)) / ((power + 1) * (last - first));
 }
 
-/// Mean of the products of 1 and x^2 over the image.
+/// Mean of the products of 1 and x^2 + y^2 over the image.
 Eigen::Matrix2d mean_square(const Camera& camera) {
-  const double left = -camera.cx / camera.fx, right = (camera.width - camera.cx) / camera.fx, width = right - left;
-  const double second = (std::pow(right, 3) - std::pow(left, 3)) / (3.0 * width);
-  const double fourth = (std::pow(right, 5) - std::pow(left, 5)) / (5.0 * width);
-  return (Eigen::Matrix2d() << 1.0, second, second, fourth).finished();
+  const double left = -camera.cx / camera.fx, right = (camera.width - camera.cx) / camera.fx;
+  const double top = -camera.cy / camera.fy, bottom = (camera.height - camera.cy) / camera.fy;
+  const double xx = mean_power(left, right, 2), yy = mean_power(top, bottom, 2);
+  const double fourth = mean_power(left, right, 4) + 2.0 * xx * yy + mean_power(top, bottom, 4);
+  return (Eigen::Matrix2d() << 1.0, xx + yy, xx + yy, fourth).finished();
 }
 
-/// Chi-square of columns that is no chance: one in a thousand exceeds it with two degrees of freedom, one in 5000 with
-/// one.
+/// Chi-square that is no chance: one in a thousand exceeds it with two degrees of freedom, one in 5000 with one.
 constexpr double significant = 13.8;
+
+/// How far 1 of radial distortion displaces a column at the border of the image [px].
+double effect_of_radial(const Camera& camera) { return std::pow(0.5 * camera.width, 3) / (camera.fx * camera.fx); }
 
 }  // namespace
 
 StereoCalibration::StereoCalibration(const Camera& camera, const PairErrors& errors, bool estimates)
     : camera_(camera), estimates_(estimates), column_area_(mean_square(camera)) {
   estimate_.errors = errors_of_frame_ = errors;
-  given_columns_ = columns_of(errors, camera.fx);
+  given_ = solution_ = unknowns_of(errors);
+}
+
+StereoCalibration::Vector StereoCalibration::unknowns_of(const PairErrors& errors) const {
+  Vector unknown;
+  unknown[pitch] = errors.rotation.x();
+  unknown[roll] = errors.rotation.z();
+  unknown[ratio] = errors.focal_ratio - 1.0;
+  unknown[radial] = errors.radial;
+  unknown[product] = errors.row_product();
+  unknown[constant] = errors.rotation.y() + errors.column_offset / camera_.fx;
+  unknown[quadratic] = errors.rotation.y();
+  return unknown;
 }
 
 PairErrors StereoCalibration::errors() const {
@@ -85,41 +108,29 @@ bool StereoCalibration::learn_rows(std::span<const RowDifference> differences) {
   row_normal_ *= remembered;
   row_gradient_ *= remembered;
   for (const RowDifference& d : differences) {
-    const Eigen::Vector4d row = row_terms((d.x - camera_.cx) / camera_.fx, (d.y - camera_.cy) / camera_.fy);
+    const double x = (d.x - camera_.cx) / camera_.fx, y = (d.y - camera_.cy) / camera_.fy;
+    Vector row = Vector::Zero();
+    row[pitch] = -1.0, row[roll] = x, row[ratio] = y, row[radial] = y * (x * x + y * y), row[product] = x * y;
+    const double difference = d.difference / camera_.fy, sigma = d.sigma / camera_.fy;
     const double weight =
-        huber_weight(std::abs(d.difference - row.dot(row_solution_)) / d.sigma) / (d.sigma * d.sigma * repetition);
+        huber_weight(std::abs(difference - row.dot(solution_)) / sigma) / (sigma * sigma * repetition);
     row_normal_ += weight * row * row.transpose();
-    row_gradient_ += weight * d.difference * row;
+    row_gradient_ += weight * difference * row;
   }
-  return use_rows();
-}
-
-bool StereoCalibration::use_rows() {
-  const Eigen::LDLT<Eigen::Matrix4d> factor(row_normal_);
-  if (factor.info() != Eigen::Success || !(factor.rcond() > 1e-6)) return false;
-  row_solution_ = factor.solve(row_gradient_);
-  const Eigen::Vector4d sigma = factor.solve(Eigen::Matrix4d::Identity()).diagonal().cwiseSqrt() / camera_.fy;
-  const Eigen::Vector4d found = row_solution_ / camera_.fy;
-  // What the errors displace at the border of the image: rows, or columns, which matter more.
-  const double half_width = 0.5 * camera_.width, half_height = 0.5 * camera_.height;
-  PairErrors& errors = estimate_.errors;
-  const PairErrors before = errors;
-  use(-found[0], sigma[0], camera_.fy, uses_pitch_, errors.rotation.x());
-  use(found[1], sigma[1], half_height, uses_roll_, errors.rotation.z());
-  use(1.0 + found[2], sigma[2], half_width, uses_ratio_, errors.focal_ratio);
-  use(found[3], sigma[3], half_width * half_height / camera_.fy, uses_product_, errors.row_product);
-  estimate_.rotation_sigma.x() = sigma[0];
-  estimate_.rotation_sigma.z() = sigma[1];
-  estimate_.focal_ratio_sigma = sigma[2];
-  return errors != before;
+  return use_solution();
 }
 
 void StereoCalibration::learn_columns(const ColumnEstimate& estimate, const PairErrors& used, bool window_is_complete) {
+  constexpr double repetition = 2.0;  // keyframes show the same points: so many disparities count as one
   if (!estimates_ || !estimate.value.allFinite() || !estimate.information.allFinite()) return;
   const std::lock_guard lock(mutex_);
-  window_normal_ = estimate.information;
-  window_gradient_ = estimate.information * (estimate.value + columns_of(used, camera_.fx));
-  use_columns();
+  const Eigen::Vector4d value = estimate.value / camera_.fx + Eigen::Vector4d(unknowns_of(used)(unknowns_of_columns));
+  const Eigen::Matrix4d information = estimate.information * (camera_.fx * camera_.fx / repetition);
+  window_normal_.setZero();
+  window_gradient_.setZero();
+  window_normal_(unknowns_of_columns, unknowns_of_columns) = information;
+  window_gradient_(unknowns_of_columns) = information * value;
+  use_solution();
   if (!window_is_complete) return;
   column_normal_ += window_normal_;
   column_gradient_ += window_gradient_;
@@ -127,35 +138,84 @@ void StereoCalibration::learn_columns(const ColumnEstimate& estimate, const Pair
   window_gradient_.setZero();
 }
 
-/// c and q of ColumnEstimate. A turn is the cause unless the difference to it is significant: q is determined several
-/// times worse than c, and a turn displaces both alike.
-ColumnEstimate StereoCalibration::solve_columns() const {
-  // A pair that is used as rectified has errors of about a pixel.
-  const Eigen::Matrix2d normal = column_normal_ + window_normal_ + Eigen::Matrix2d::Identity();
-  const Eigen::Vector2d gradient = column_gradient_ + window_gradient_;
-  const Eigen::Matrix2d covariance = normal.inverse();
-  const Eigen::Vector2d found = covariance * gradient - given_columns_;
-  const double difference = found[1] - found[0];
-  const double variance = covariance(0, 0) + covariance(1, 1) - 2.0 * covariance(0, 1);
-  if (difference * difference > significant * variance) return {given_columns_ + found, normal};
-  const double turn = (gradient - normal * given_columns_).sum() / normal.sum();
-  return {given_columns_ + Eigen::Vector2d::Constant(turn), normal};
+/// The solution in which causes that the measurements do not contradict are left out.
+StereoCalibration::Solution StereoCalibration::solve() const {
+  // A pair that is used as rectified has errors of about a pixel. The others only keep the system regular.
+  Vector deviation = Vector::Constant(0.05);
+  for (const Unknown unknown : {radial, constant, quadratic}) deviation[unknown] = 1.0 / camera_.fx;
+  const Matrix information = row_normal_ + column_normal_ + window_normal_;
+  const Matrix normal = information + Matrix(deviation.cwiseAbs2().cwiseInverse().asDiagonal());
+  const Vector gradient = row_gradient_ + column_gradient_ + window_gradient_ - information * given_;
+  // Of the differences to what is given.
+  const Matrix covariance = normal.ldlt().solve(Matrix::Identity());
+  const Vector found = covariance * gradient;
+  const bool has_radial =
+      uses_radial_ || is_relevant(found[radial], std::sqrt(covariance(radial, radial)), effect_of_radial(camera_));
+  const double offset = found[quadratic] - found[constant];
+  const bool has_offset =
+      offset * offset > significant * (covariance(constant, constant) + covariance(quadratic, quadratic) -
+                                       2.0 * covariance(constant, quadratic));
+  // Columns of `by_free`: what each free unknown changes.
+  Eigen::MatrixXd by_free = Matrix::Identity();
+  if (!has_offset) by_free(quadratic, constant) = 1.0, by_free.col(quadratic).setZero();
+  if (!has_radial) by_free.col(radial).setZero();
+  Eigen::Index kept = 0;
+  for (Eigen::Index i = 0; i < unknowns; ++i)
+    if (by_free.col(i).any()) by_free.col(kept++) = by_free.col(i).eval();
+  by_free.conservativeResize(Eigen::NoChange, kept);
+  const Eigen::MatrixXd free_covariance =
+      (by_free.transpose() * normal * by_free).ldlt().solve(Eigen::MatrixXd::Identity(kept, kept));
+  return {given_ + by_free * (free_covariance * (by_free.transpose() * gradient)),
+          has_radial && has_offset ? covariance : Matrix(by_free * free_covariance * by_free.transpose())};
 }
 
-void StereoCalibration::use_columns() {
-  const auto [found, normal] = solve_columns();
-  const Eigen::Matrix2d covariance = normal.inverse();
+bool StereoCalibration::use_solution() {
+  const auto [found, covariance] = solve();
+  if (!found.allFinite()) return false;
+  solution_ = found;
+  const Vector sigma = covariance.diagonal().cwiseSqrt();
+  // What the errors displace at the border of the image: rows, or columns, which matter more.
+  const double half_width = 0.5 * camera_.width, half_height = 0.5 * camera_.height;
   PairErrors& errors = estimate_.errors;
-  estimate_.shift = found[0];
-  estimate_.shift_sigma = std::sqrt(covariance(0, 0));
-  estimate_.rotation_sigma.y() = std::sqrt(covariance(1, 1)) / camera_.fx;
-  const Eigen::Vector2d step = found - columns_of(errors, camera_.fx);
-  const double shift = std::sqrt(step.dot(column_area_ * step)), chi_square = step.dot(normal * step);
+  const PairErrors before = errors;
+  use(found[pitch], sigma[pitch], camera_.fy, uses_pitch_, errors.rotation.x());
+  use(found[roll], sigma[roll], half_height, uses_roll_, errors.rotation.z());
+  use(1.0 + found[ratio], sigma[ratio], half_width, uses_ratio_, errors.focal_ratio);
+  use(found[radial], sigma[radial], effect_of_radial(camera_), uses_radial_, errors.radial);
+  double used_product = errors.row_product();
+  use(found[product], sigma[product], half_width * half_height / camera_.fx, uses_product_, used_product);
+  use_columns(found, covariance);
+  if (uses_product_) errors.decentring = errors.rotation.y() - used_product;
+  const bool has_rows = row_normal_(pitch, pitch) > 0.0;
+  const bool has_columns = column_normal_(constant, constant) + window_normal_(constant, constant) > 0.0;
+  estimate_.focal_ratio_sigma = sigma[ratio];
+  estimate_.radial_sigma = sigma[radial];
+  if (has_rows) estimate_.rotation_sigma.x() = sigma[pitch], estimate_.rotation_sigma.z() = sigma[roll];
+  if (has_columns) {
+    estimate_.rotation_sigma.y() = sigma[quadratic];
+    estimate_.shift = found[constant] * camera_.fx;
+    estimate_.shift_sigma = sigma[constant] * camera_.fx;
+  }
+  if (has_rows && has_columns)
+    estimate_.decentring_sigma = std::sqrt(covariance(quadratic, quadratic) + covariance(product, product) -
+                                           2.0 * covariance(quadratic, product));
+  return errors != before;
+}
+
+void StereoCalibration::use_columns(const Vector& found, const Matrix& covariance) {
+  constexpr std::array<Eigen::Index, 2> both{constant, quadratic};
+  PairErrors& errors = estimate_.errors;
+  const Eigen::Vector2d step = (found - unknowns_of(errors))(both);
+  const Eigen::Matrix2d of_both = covariance(both, both);
+  const double shift = std::sqrt(step.dot(column_area_ * step)) * camera_.fx;
+  // Both are one unknown where a rotation is the only cause.
+  const bool is_rotation = !(of_both.determinant() > 1e-9 * of_both(0, 0) * of_both(1, 1));
+  const double chi_square = is_rotation ? step[0] * step[0] / of_both(0, 0) : step.dot(of_both.inverse() * step);
   const bool begins = shift > minimum_shift && chi_square > significant;
   if (!begins && !(uses_columns_ && shift > minimum_step)) return;
   uses_columns_ = true;
-  errors.rotation.y() = found[1] / camera_.fx;
-  errors.column_offset = found[0] - found[1];
+  errors.rotation.y() = found[quadratic];
+  errors.column_offset = (found[constant] - found[quadratic]) * camera_.fx;
 }
 
 }  // namespace holdfast

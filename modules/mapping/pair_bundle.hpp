@@ -9,16 +9,16 @@
 
 namespace holdfast {
 
-/// Bundle adjustment of keyframes of a stereo pair with the displacement of columns as two more unknowns: poses,
-/// points, and (c, q) of ColumnEstimate. The disparity of a point at depth z is
+/// Bundle adjustment of keyframes of a stereo pair with the displacement of columns as more unknowns: poses, points,
+/// and those of ColumnEstimate. The disparity of a point at depth z is
 ///
-///   x - right_x = fx * baseline / z - c - q * x_right^2
+///   x - right_x = fx * baseline / z - (c + q r^2 + m x + k x r^2),   r^2 = x^2 + y^2 in the right image
 ///
 /// so that near points determine the scale of the motion, and far points, triangulated over it, the displacement.
 /// Gauss-Newton with Huber's weights; the points are eliminated first, and then the poses (two Schur complements):
 ///
 ///   | S_tt  S_te |   poses (the first one is fixed)
-///   | S_et  S_ee |   c, q;   information of (c, q): S_ee - S_et S_tt^-1 S_te
+///   | S_et  S_ee |   c, q, m, k;   their information: S_ee - S_et S_tt^-1 S_te
 ///
 /// The information is divided by the variance of unit weight where this exceeds 1.
 class PairBundle {
@@ -32,7 +32,7 @@ class PairBundle {
   bool iterate(BundleProblem& problem, bool rejects);
   void add_point(const BundleProblem& problem, std::size_t first, std::size_t last, bool rejects);
 
-  Eigen::Vector2d columns_;
+  Eigen::Vector4d columns_;
   Eigen::MatrixXd system_;
   Eigen::VectorXd gradient_;
   ColumnEstimate result_;
@@ -46,7 +46,7 @@ class PairBundle {
   struct PointTerms {
     Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-    Eigen::Matrix<double, 3, 2> by_columns = Eigen::Matrix<double, 3, 2>::Zero();
+    Eigen::Matrix<double, 3, 4> by_columns = Eigen::Matrix<double, 3, 4>::Zero();
     std::size_t first = 0, last = 0;  // of couplings_
   };
   std::vector<Coupling> couplings_;

@@ -74,7 +74,7 @@ std::unique_ptr<StereoCalibration> calibration_of_pair(const PipelineParts& part
   if (parts.sensor != Sensor::stereo || s.self_calibration == SelfCalibration::off) return nullptr;
   return std::make_unique<StereoCalibration>(
       parts.camera,
-      PairErrors{{s.rotation_x, s.rotation_y, s.rotation_z}, s.focal_ratio, s.column_offset, s.row_product},
+      PairErrors{{s.rotation_x, s.rotation_y, s.rotation_z}, s.focal_ratio, s.column_offset, s.radial, s.decentring},
       s.self_calibration == SelfCalibration::estimated);
 }
 

@@ -63,7 +63,10 @@ Json pair_json(const PairEstimate& estimate) {
           {"focal_ratio", estimate.errors.focal_ratio},
           {"focal_ratio_sigma", estimate.focal_ratio_sigma},
           {"column_offset_px", estimate.errors.column_offset},
-          {"row_product", estimate.errors.row_product},
+          {"radial", estimate.errors.radial},
+          {"radial_sigma", estimate.radial_sigma},
+          {"decentring", estimate.errors.decentring},
+          {"decentring_sigma", estimate.decentring_sigma},
           {"shift_px", estimate.shift},
           {"shift_sigma_px", estimate.shift_sigma}};
 }

@@ -104,6 +104,8 @@ std::string pair_text(const PairEstimate& pair) {
     rotation += (axis == 0 ? "" : ", ") + fixed_text(1e3 * pair.errors.rotation[axis], 2);
   std::string text = "calibration corrected: right camera turned by " + rotation + " mrad about x, y, z, focal ratio " +
                      fixed_text(pair.errors.focal_ratio, 5);
+  if (pair.errors.radial != 0.0) text += ", radial distortion " + fixed_text(pair.errors.radial, 5);
+  if (pair.errors.decentring != 0.0) text += ", decentring " + fixed_text(pair.errors.decentring, 5);
   if (pair.shift_sigma > 0.0)
     text += ", columns shifted by " + fixed_text(pair.shift, 2) + " +- " + fixed_text(pair.shift_sigma, 2) + " px";
   return text;

@@ -49,8 +49,13 @@ void StereoSettings::describe(ParameterTable<StereoSettings>& table) {
       .range(-100, 100)
       .unit("px");
   table
-      .add("row_product", &S::row_product,
-           "error of the calibration: coefficient of column by row in the differences of rows, all by focal length")
+      .add("radial", &S::radial,
+           "error of the calibration: radial distortion of the right camera (k1) that the left one does not have")
+      .range(-0.1, 0.1);
+  table
+      .add("decentring", &S::decentring,
+           "error of the calibration: decentring distortion of the right camera (p2), beyond what a rotation about the "
+           "axis downwards would do")
       .range(-0.1, 0.1);
 }
 

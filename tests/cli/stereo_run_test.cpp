@@ -97,6 +97,16 @@ TEST(StereoRun, ASimulatedPairIsTrackedToAMillimetre) {
   EXPECT_EQ(summary.at("pair_calibration").at("column_offset_px"), 0.0);
 }
 
+TEST(StereoRun, GivenErrorsOfTheLensAreReported) {
+  const test::Program program;
+  const nlohmann::json summary =
+      run_stereo(program, "out",
+                 {"source={simulated: {path: xyz, duration: 0.5, stereo_baseline: 0.11, seed: 1}}", "camera=tum_fr3",
+                  "stereo.self_calibration=fixed", "stereo.radial=0.0001", "stereo.decentring=0.0002"});
+  EXPECT_EQ(summary.at("pair_calibration").at("radial"), 0.0001);
+  EXPECT_EQ(summary.at("pair_calibration").at("decentring"), 0.0002);
+}
+
 /// A lorry fills the middle of the view at a constant distance, with more features than the road: the road decides.
 /// With 1000 features, few of the road are like those of a view from a metre behind.
 TEST(StereoRun, ASimulatedStreetIsDrivenToAFewCentimetres) {

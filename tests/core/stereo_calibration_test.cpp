@@ -17,7 +17,7 @@ class StereoCalibrationTest : public ::testing::Test {
  protected:
   StereoCalibrationTest() {
     camera_.width = 1226, camera_.height = 370;
-    camera_.fx = camera_.fy = 707.0;
+    camera_.fx = 707.0, camera_.fy = 690.0;
     camera_.cx = 602.0, camera_.cy = 183.0;
     camera_.baseline = 0.54;
   }
@@ -55,11 +55,12 @@ class StereoCalibrationTest : public ::testing::Test {
       calibration.learn_rows(rows);
     }
   }
-  /// The coefficients that bundle adjustment finds: of a turn and of the principal point.
+  /// The coefficients that bundle adjustment finds.
   ColumnEstimate columns(const PairErrors& used, double sigma) {
     const double turn = camera_.fx * (truth_.rotation.y() - used.rotation.y());
     ColumnEstimate estimate;
-    estimate.value << turn + truth_.column_offset - used.column_offset, turn;
+    estimate.value << turn + truth_.column_offset - used.column_offset, turn,
+        camera_.fx * (truth_.focal_ratio - used.focal_ratio), camera_.fx * (truth_.radial - used.radial);
     for (double& value : estimate.value) value += sigma * random_.normal();
     estimate.information.diagonal().setConstant(1.0 / (sigma * sigma));
     return estimate;
@@ -77,6 +78,8 @@ TEST_F(StereoCalibrationTest, RowsDetermineRollPitchAndFocalRatioAndMotionTheRes
   StereoCalibration calibration(camera_, {}, true);
   learn_rows(calibration, 10);
   EXPECT_EQ(calibration.errors().rotation.y(), 0.0) << "no motion yet";
+  EXPECT_EQ(calibration.estimate().rotation_sigma.y(), 0.0);
+  EXPECT_EQ(calibration.estimate().shift_sigma, 0.0);
   for (int window = 0; window < 4; ++window)
     calibration.learn_columns(columns(calibration.errors(), 0.03), calibration.errors(), true);
   const PairEstimate found = calibration.estimate();
@@ -88,7 +91,7 @@ TEST_F(StereoCalibrationTest, RowsDetermineRollPitchAndFocalRatioAndMotionTheRes
   EXPECT_NEAR(found.errors.focal_ratio, 1.002, 2e-4);
   EXPECT_NEAR(found.errors.column_offset, 0.3, 0.1);
   EXPECT_NEAR(found.shift, camera_.fx * -0.0008 + 0.3, 0.05);
-  EXPECT_NEAR(found.shift_sigma, 0.015, 0.005);
+  EXPECT_NEAR(found.shift_sigma, 0.021, 0.007);
 }
 
 TEST_F(StereoCalibrationTest, CorrectedDisparitiesAndRowsAreThoseOfAPerfectPair) {
@@ -135,7 +138,105 @@ TEST_F(StereoCalibrationTest, ARestOfDistortionIsTakenNeitherForRollNorForAFocal
   }
   EXPECT_EQ(calibration.errors().rotation, PairErrors().rotation);
   EXPECT_EQ(calibration.errors().focal_ratio, 1.0);
-  EXPECT_NEAR(calibration.errors().row_product * camera_.fy, 7.0, 0.7);
+  EXPECT_NEAR(calibration.errors().row_product() * camera_.fy, 7.0, 0.7);
+}
+
+/// Brown's model of a lens, and the errors that PairErrors says are those of it.
+TEST(PairErrorsTest, ALensWithRadialAndDecentringDistortionIsDescribed) {
+  Camera camera;
+  camera.width = 1226, camera.height = 370;
+  camera.fx = 707.0, camera.fy = 690.0;
+  camera.cx = 602.0, camera.cy = 183.0;
+  constexpr double turn = 0.0005, k1 = -0.003, p2 = -0.006;
+  PairErrors errors;
+  errors.rotation.y() = turn + 3.0 * p2;
+  errors.column_offset = -3.0 * p2 * camera.fx;
+  errors.radial = k1;
+  errors.decentring = p2;
+  for (const double column : {30.0, 400.0, 700.0, 1190.0})
+    for (const double row : {10.0, 100.0, 250.0, 360.0}) {
+      const Eigen::Vector2d at = camera.normalised(column, row);
+      const double x = at.x(), y = at.y(), square = at.squaredNorm();
+      const double dx = turn * (1.0 + x * x) + k1 * x * square + p2 * (square + 2.0 * x * x);
+      const double dy = turn * x * y + k1 * y * square + 2.0 * p2 * x * y;
+      EXPECT_NEAR(errors.column(camera, column, row), camera.fx * dx, 1e-9);
+      EXPECT_NEAR(errors.row(camera, column, row), camera.fy * dy, 1e-9);
+    }
+}
+
+/// Motion tells c + q r^2, rows the product x y; the rest of both is that of a lens.
+TEST_F(StereoCalibrationTest, DecentringFollowsFromRowsAndMotion) {
+  truth_.rotation.y() = 0.8 / camera_.fx;
+  truth_.column_offset = -0.7;
+  truth_.decentring = (0.8 - 6.5) / camera_.fx;
+  StereoCalibration calibration(camera_, {}, true);
+  for (int frame = 0; frame < 20; ++frame) {
+    std::vector<RowDifference> rows;
+    for (const Sight& s : look(400))
+      rows.push_back({s.x, s.y, truth_.row(camera_, s.x, s.y) + 0.7 * random_.normal(), 0.7});
+    calibration.learn_rows(rows);
+  }
+  EXPECT_NEAR(calibration.errors().row_product() * camera_.fy, 6.5, 0.5);
+  EXPECT_EQ(calibration.errors().rotation.y(), 0.0) << "no motion yet";
+  for (int window = 0; window < 4; ++window)
+    calibration.learn_columns(columns(calibration.errors(), 0.05), calibration.errors(), true);
+  const PairErrors found = calibration.errors();
+  EXPECT_NEAR(found.row_product() * camera_.fy, 6.5, 0.5);
+  EXPECT_NEAR(found.decentring * camera_.fx, 0.8 - 6.5, 0.6);
+  for (const double column : {30.0, 700.0, 1190.0})
+    for (const double row : {10.0, 250.0, 360.0})
+      EXPECT_NEAR(found.column(camera_, column, row), truth_.column(camera_, column, row), 0.15)
+          << column << ' ' << row;
+}
+
+TEST_F(StereoCalibrationTest, RadialDistortionShowsInRowsToo) {
+  truth_.radial = -6.0 / camera_.fx;
+  StereoCalibration calibration(camera_, {}, true);
+  for (int frame = 0; frame < 60; ++frame) {
+    std::vector<RowDifference> rows;
+    for (const Sight& s : look(800))
+      rows.push_back({s.x, s.y, truth_.row(camera_, s.x, s.y) + 0.3 * random_.normal(), 0.3});
+    calibration.learn_rows(rows);
+  }
+  EXPECT_NEAR(calibration.errors().radial * camera_.fx, -6.0, 1.0);
+}
+
+TEST_F(StereoCalibrationTest, MotionAloneDeterminesTheRatioOfFocalLengths) {
+  truth_.focal_ratio = 1.001;
+  StereoCalibration calibration(camera_, {}, true);
+  for (int window = 0; window < 4; ++window)
+    calibration.learn_columns(columns(calibration.errors(), 0.1), calibration.errors(), true);
+  EXPECT_NEAR(calibration.errors().focal_ratio, 1.001, 3e-4);
+  EXPECT_EQ(calibration.estimate().rotation_sigma.x(), 0.0) << "of rows only";
+}
+
+/// What is in use stays in use, also where a later estimate would not begin it.
+TEST_F(StereoCalibrationTest, RadialDistortionInUseStays) {
+  truth_.radial = -1.5 / camera_.fx;
+  StereoCalibration calibration(camera_, {}, true);
+  for (int window = 0; window < 4; ++window)
+    calibration.learn_columns(columns(calibration.errors(), 0.1), calibration.errors(), true);
+  ASSERT_NE(calibration.errors().radial, 0.0);
+  truth_.radial = 0.0;
+  for (int window = 0; window < 40; ++window)
+    calibration.learn_columns(columns(calibration.errors(), 0.1), calibration.errors(), true);
+  EXPECT_NE(calibration.errors().radial, 0.0);
+  EXPECT_NEAR(calibration.errors().radial * camera_.fx, -1.5 * 4.0 / 44.0, 0.1);
+}
+
+TEST_F(StereoCalibrationTest, RadialDistortionIsFoundByMotionWhereItIsSignificant) {
+  for (const double pixels : {-2.0, 0.1}) {
+    truth_.radial = pixels / camera_.fx;
+    StereoCalibration calibration(camera_, {}, true);
+    for (int window = 0; window < 4; ++window)
+      calibration.learn_columns(columns(calibration.errors(), 0.1), calibration.errors(), true);
+    if (pixels < -1.0) {
+      EXPECT_NEAR(calibration.errors().radial * camera_.fx, pixels, 0.3);
+      EXPECT_GT(calibration.estimate().radial_sigma, 0.0);
+    } else {
+      EXPECT_EQ(calibration.errors().radial, 0.0);
+    }
+  }
 }
 
 TEST_F(StereoCalibrationTest, APerfectPairIsLeftAlone) {
@@ -153,13 +254,13 @@ TEST_F(StereoCalibrationTest, ErrorsThatMotionDoesNotDetermineAreNotUsed) {
   EXPECT_EQ(calibration.errors(), PairErrors());
 }
 
-/// The term of columns by x^2 is several times less certain than the constant one.
+/// The term of columns by r^2 is several times less certain than the constant one.
 TEST_F(StereoCalibrationTest, ATurnIsTheCauseOfColumnsUnlessMotionContradictsIt) {
   const double turn = 0.001 * camera_.fx;  // px
   const auto errors_after = [&](const Eigen::Vector2d& found, const PairErrors& given) {
     ColumnEstimate estimate;
-    estimate.value = found;
-    estimate.information.diagonal() << 1.0 / (0.02 * 0.02), 1.0 / (0.06 * 0.06);
+    estimate.value.head<2>() = found;
+    estimate.information.diagonal() << 1.0 / (0.02 * 0.02), 1.0 / (0.06 * 0.06), 1.0 / (0.1 * 0.1), 1.0 / (0.2 * 0.2);
     StereoCalibration calibration(camera_, given, true);
     calibration.learn_columns(estimate, given, true);
     return calibration.errors();

@@ -39,7 +39,8 @@ class PairBundleTest : public ::testing::Test {
 
   void add_point(double metres_per_keyframe, double map_scale, double moving_share) {
     const double depth = 1.0 / random_.uniform(1.0 / 60.0, 1.0 / 8.0);
-    Eigen::Vector3d point = camera_.back_project(random_.uniform(0.0, 1226.0), random_.uniform(0.0, 370.0), depth);
+    Eigen::Vector3d point =
+        camera_.back_project(random_.uniform(0.0, 1226.0), random_.uniform(0.0, camera_.height), depth);
     const auto index = static_cast<std::uint32_t>(problem_.points.size());
     const double speed = random_.uniform(0.0, 1.0) < moving_share ? 0.2 : 0.0;  // m a keyframe, across
     const std::size_t begin = problem_.observations.size();
@@ -51,15 +52,17 @@ class PairBundleTest : public ::testing::Test {
       if (pixel.x() < 0.0 || pixel.x() > camera_.width || pixel.y() < 0.0 || pixel.y() > camera_.height) break;
       const double x = pixel.x() + 0.3 * random_.normal(), y = pixel.y() + 0.3 * random_.normal();
       const double right = camera_.right_x(pixel.x(), seen.z());
-      const double column = (right - camera_.cx) / camera_.fx;
+      const Eigen::Vector2d at = camera_.normalised(right, pixel.y());
+      const Eigen::Vector4d terms(1.0, at.squaredNorm(), at.x(), at.x() * at.squaredNorm());
+      const bool is_coarse = index % 10 < coarse_tenths_;
+      const double displaced = terms.dot(truth_) + lens_.column(camera_, right, pixel.y()) + (is_coarse ? 1.0 : 0.0);
       problem_.observations.push_back(
           {.pose = static_cast<std::uint32_t>(k),
            .point = index,
            .x = static_cast<float>(x),
            .y = static_cast<float>(y),
-           .right_x = static_cast<float>(right + x - pixel.x() + truth_.x() + truth_.y() * column * column +
-                                         0.3 * random_.normal()),
-           .inverse_sigma2 = 1.0F});
+           .right_x = static_cast<float>(right + x - pixel.x() + displaced + 0.3 * random_.normal()),
+           .inverse_sigma2 = is_coarse ? 1.0F / 16.0F : 1.0F});
     }
     if (problem_.observations.size() - begin >= 3) return;
     problem_.observations.resize(begin);
@@ -68,17 +71,19 @@ class PairBundleTest : public ::testing::Test {
 
   Random random_{5};
   Camera camera_ = street_camera();
-  Eigen::Vector2d truth_ = Eigen::Vector2d::Zero();  // c and q of ColumnEstimate
+  Eigen::Vector4d truth_ = Eigen::Vector4d::Zero();  // as ColumnEstimate::value
+  PairErrors lens_;                                  // displaces columns as well
+  std::uint32_t coarse_tenths_ = 0;                  // of the points, whose columns are 1 px off
   BundleProblem problem_;
 };
 
 TEST_F(PairBundleTest, MotionDeterminesTheDisplacementOfColumns) {
-  truth_ << 0.5, -0.4;
+  truth_ << 0.5, -0.4, 0.6, -1.0;
   drive(1.2);
   const std::optional<ColumnEstimate> found = PairBundle().solve(problem_);
   ASSERT_TRUE(found);
-  const Eigen::Vector2d sigma = found->information.inverse().eval().diagonal().cwiseSqrt();
-  for (int term = 0; term < 2; ++term) EXPECT_NEAR(found->value[term], truth_[term], 3.0 * sigma[term]) << term;
+  const Eigen::Vector4d sigma = found->information.inverse().eval().diagonal().cwiseSqrt();
+  for (int term = 0; term < 4; ++term) EXPECT_NEAR(found->value[term], truth_[term], 3.0 * sigma[term]) << term;
   EXPECT_LT(sigma[0], 0.1);
   EXPECT_NEAR(problem_.poses.back().T_camera_world.translation().z(), -9 * 1.2, 0.02 * 9 * 1.2);
 }
@@ -87,8 +92,8 @@ TEST_F(PairBundleTest, APerfectPairIsFoundPerfect) {
   drive(1.2);
   const std::optional<ColumnEstimate> found = PairBundle().solve(problem_);
   ASSERT_TRUE(found);
-  const Eigen::Vector2d sigma = found->information.inverse().eval().diagonal().cwiseSqrt();
-  for (int term = 0; term < 2; ++term) EXPECT_LT(std::abs(found->value[term]), 3.0 * sigma[term]) << term;
+  const Eigen::Vector4d sigma = found->information.inverse().eval().diagonal().cwiseSqrt();
+  for (int term = 0; term < 4; ++term) EXPECT_LT(std::abs(found->value[term]), 3.0 * sigma[term]) << term;
 }
 
 TEST_F(PairBundleTest, WhatMovesIsSetAside) {
@@ -97,6 +102,43 @@ TEST_F(PairBundleTest, WhatMovesIsSetAside) {
   const std::optional<ColumnEstimate> found = PairBundle().solve(problem_);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->value[0], 0.5, 0.15);
+}
+
+TEST_F(PairBundleTest, DisparitiesOfCoarseFeaturesCountLess) {
+  coarse_tenths_ = 3;
+  drive(1.2);
+  const std::optional<ColumnEstimate> found = PairBundle().solve(problem_);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->value[0], 0.0, 0.15);
+}
+
+/// Of decentring, rows tell the product, and motion the rest.
+TEST_F(PairBundleTest, ColumnsOfDecentringFollowFromTheProductInTheRows) {
+  camera_.height = 1000, camera_.cy = 500.0;
+  PairErrors truth, used;
+  truth.rotation.y() = 1.0 / camera_.fx;
+  truth.decentring = -2.0 / camera_.fx;
+  used.decentring = -truth.row_product();  // what rows have told
+  lens_.rotation.y() = truth.rotation.y() - used.rotation.y();
+  lens_.decentring = truth.decentring - used.decentring;
+  drive(1.2);
+  const std::optional<ColumnEstimate> found = PairBundle().solve(problem_);
+  ASSERT_TRUE(found);
+  const Eigen::Vector4d sigma = found->information.inverse().eval().diagonal().cwiseSqrt();
+  EXPECT_NEAR(found->value[0], 1.0, 3.0 * sigma[0]);
+  EXPECT_NEAR(found->value[1], 1.0, 3.0 * sigma[1]);
+  EXPECT_LT(sigma[1], 0.25);
+  for (int term = 2; term < 4; ++term) EXPECT_LT(std::abs(found->value[term]), 3.0 * sigma[term]) << term;
+}
+
+/// Radial distortion is uncertain where the view is narrow, and displaces little there.
+TEST_F(PairBundleTest, ANarrowViewIsNotImplausible) {
+  camera_.fx = camera_.fy = 2000.0;
+  truth_[0] = 0.5;
+  drive(1.2);
+  const std::optional<ColumnEstimate> found = PairBundle().solve(problem_);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->value[0], 0.5, 3.0 * std::sqrt(found->information.inverse().eval()(0, 0)));
 }
 
 TEST_F(PairBundleTest, WithoutMotionNothingIsDetermined) {

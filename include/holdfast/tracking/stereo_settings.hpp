@@ -40,7 +40,7 @@ struct StereoSettings {
   double rotation_x = 0.0, rotation_y = 0.0, rotation_z = 0.0;  ///< [rad]
   double focal_ratio = 1.0;
   double column_offset = 0.0;  ///< [px]
-  double row_product = 0.0;
+  double radial = 0.0, decentring = 0.0;
 
   static void describe(ParameterTable<StereoSettings>& table);
 };
