@@ -37,10 +37,10 @@ class BuildByCMake(build_ext):
             + [
                 "-DHOLDFAST_PYTHON=ON",
                 "-DHOLDFAST_PYTHON_PACKAGE=ON",
+                "-DHOLDFAST_PYTHON_FOLDER=.",
                 "-DHOLDFAST_UNITY=ON",
-                "-DHOLDFAST_BUILD_TESTS=OFF",
             ]
-            + ["-DHOLDFAST_BUILD_EXAMPLES=OFF", "-DHOLDFAST_BUILD_BENCHMARKS=OFF", "-DHOLDFAST_PYTHON_FOLDER=."]
+            + [f"-DHOLDFAST_BUILD_{part}=OFF" for part in ("TESTS", "EXAMPLES", "BENCHMARKS", "BRIDGE")]
             + [f"-DPython3_EXECUTABLE={sys.executable}"]
             + shlex.split(os.environ.get("CMAKE_ARGS", ""))
         )
