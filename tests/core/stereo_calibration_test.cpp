@@ -55,6 +55,15 @@ class StereoCalibrationTest : public ::testing::Test {
       calibration.learn_rows(rows);
     }
   }
+  /// Rows as PairErrors describes them, also those of a lens.
+  void learn_modelled_rows(StereoCalibration& calibration, int frames, std::size_t count, double sigma) {
+    for (int frame = 0; frame < frames; ++frame) {
+      std::vector<RowDifference> rows;
+      for (const Sight& s : look(count))
+        rows.push_back({s.x, s.y, truth_.row(camera_, s.x, s.y) + sigma * random_.normal(), sigma});
+      calibration.learn_rows(rows);
+    }
+  }
   /// The coefficients that bundle adjustment finds.
   ColumnEstimate columns(const PairErrors& used, double sigma) {
     const double turn = camera_.fx * (truth_.rotation.y() - used.rotation.y());
@@ -64,6 +73,10 @@ class StereoCalibrationTest : public ::testing::Test {
     for (double& value : estimate.value) value += sigma * random_.normal();
     estimate.information.diagonal().setConstant(1.0 / (sigma * sigma));
     return estimate;
+  }
+  void learn_columns(StereoCalibration& calibration, int windows, double sigma) {
+    for (int window = 0; window < windows; ++window)
+      calibration.learn_columns(columns(calibration.errors(), sigma), calibration.errors(), true);
   }
 
   Random random_{3};
@@ -80,8 +93,7 @@ TEST_F(StereoCalibrationTest, RowsDetermineRollPitchAndFocalRatioAndMotionTheRes
   EXPECT_EQ(calibration.errors().rotation.y(), 0.0) << "no motion yet";
   EXPECT_EQ(calibration.estimate().rotation_sigma.y(), 0.0);
   EXPECT_EQ(calibration.estimate().shift_sigma, 0.0);
-  for (int window = 0; window < 4; ++window)
-    calibration.learn_columns(columns(calibration.errors(), 0.03), calibration.errors(), true);
+  learn_columns(calibration, 4, 0.03);
   const PairEstimate found = calibration.estimate();
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(found.errors.rotation[axis], truth_.rotation[axis], 1e-4) << axis;
@@ -99,8 +111,7 @@ TEST_F(StereoCalibrationTest, CorrectedDisparitiesAndRowsAreThoseOfAPerfectPair)
   truth_.focal_ratio = 1.002;
   StereoCalibration calibration(camera_, {}, true);
   learn_rows(calibration, 20);
-  for (int window = 0; window < 4; ++window)
-    calibration.learn_columns(columns(calibration.errors(), 0.03), calibration.errors(), true);
+  learn_columns(calibration, 4, 0.03);
   double before = 0.0, after = 0.0, rows_before = 0.0, rows_after = 0.0;
   const PairErrors errors = calibration.errors();
   for (const Sight& s : look(500)) {
@@ -142,25 +153,21 @@ TEST_F(StereoCalibrationTest, ARestOfDistortionIsTakenNeitherForRollNorForAFocal
 }
 
 /// Brown's model of a lens, and the errors that PairErrors says are those of it.
-TEST(PairErrorsTest, ALensWithRadialAndDecentringDistortionIsDescribed) {
-  Camera camera;
-  camera.width = 1226, camera.height = 370;
-  camera.fx = 707.0, camera.fy = 690.0;
-  camera.cx = 602.0, camera.cy = 183.0;
+TEST_F(StereoCalibrationTest, ALensWithRadialAndDecentringDistortionIsDescribed) {
   constexpr double turn = 0.0005, k1 = -0.003, p2 = -0.006;
   PairErrors errors;
   errors.rotation.y() = turn + 3.0 * p2;
-  errors.column_offset = -3.0 * p2 * camera.fx;
+  errors.column_offset = -3.0 * p2 * camera_.fx;
   errors.radial = k1;
   errors.decentring = p2;
   for (const double column : {30.0, 400.0, 700.0, 1190.0})
     for (const double row : {10.0, 100.0, 250.0, 360.0}) {
-      const Eigen::Vector2d at = camera.normalised(column, row);
+      const Eigen::Vector2d at = camera_.normalised(column, row);
       const double x = at.x(), y = at.y(), square = at.squaredNorm();
       const double dx = turn * (1.0 + x * x) + k1 * x * square + p2 * (square + 2.0 * x * x);
       const double dy = turn * x * y + k1 * y * square + 2.0 * p2 * x * y;
-      EXPECT_NEAR(errors.column(camera, column, row), camera.fx * dx, 1e-9);
-      EXPECT_NEAR(errors.row(camera, column, row), camera.fy * dy, 1e-9);
+      EXPECT_NEAR(errors.column(camera_, column, row), camera_.fx * dx, 1e-9);
+      EXPECT_NEAR(errors.row(camera_, column, row), camera_.fy * dy, 1e-9);
     }
 }
 
@@ -170,16 +177,10 @@ TEST_F(StereoCalibrationTest, DecentringFollowsFromRowsAndMotion) {
   truth_.column_offset = -0.7;
   truth_.decentring = (0.8 - 6.5) / camera_.fx;
   StereoCalibration calibration(camera_, {}, true);
-  for (int frame = 0; frame < 20; ++frame) {
-    std::vector<RowDifference> rows;
-    for (const Sight& s : look(400))
-      rows.push_back({s.x, s.y, truth_.row(camera_, s.x, s.y) + 0.7 * random_.normal(), 0.7});
-    calibration.learn_rows(rows);
-  }
+  learn_modelled_rows(calibration, 20, 400, 0.7);
   EXPECT_NEAR(calibration.errors().row_product() * camera_.fy, 6.5, 0.5);
   EXPECT_EQ(calibration.errors().rotation.y(), 0.0) << "no motion yet";
-  for (int window = 0; window < 4; ++window)
-    calibration.learn_columns(columns(calibration.errors(), 0.05), calibration.errors(), true);
+  learn_columns(calibration, 4, 0.05);
   const PairErrors found = calibration.errors();
   EXPECT_NEAR(found.row_product() * camera_.fy, 6.5, 0.5);
   EXPECT_NEAR(found.decentring * camera_.fx, 0.8 - 6.5, 0.6);
@@ -192,20 +193,14 @@ TEST_F(StereoCalibrationTest, DecentringFollowsFromRowsAndMotion) {
 TEST_F(StereoCalibrationTest, RadialDistortionShowsInRowsToo) {
   truth_.radial = -6.0 / camera_.fx;
   StereoCalibration calibration(camera_, {}, true);
-  for (int frame = 0; frame < 60; ++frame) {
-    std::vector<RowDifference> rows;
-    for (const Sight& s : look(800))
-      rows.push_back({s.x, s.y, truth_.row(camera_, s.x, s.y) + 0.3 * random_.normal(), 0.3});
-    calibration.learn_rows(rows);
-  }
+  learn_modelled_rows(calibration, 60, 800, 0.3);
   EXPECT_NEAR(calibration.errors().radial * camera_.fx, -6.0, 1.0);
 }
 
 TEST_F(StereoCalibrationTest, MotionAloneDeterminesTheRatioOfFocalLengths) {
   truth_.focal_ratio = 1.001;
   StereoCalibration calibration(camera_, {}, true);
-  for (int window = 0; window < 4; ++window)
-    calibration.learn_columns(columns(calibration.errors(), 0.1), calibration.errors(), true);
+  learn_columns(calibration, 4, 0.1);
   EXPECT_NEAR(calibration.errors().focal_ratio, 1.001, 3e-4);
   EXPECT_EQ(calibration.estimate().rotation_sigma.x(), 0.0) << "of rows only";
 }
@@ -214,12 +209,10 @@ TEST_F(StereoCalibrationTest, MotionAloneDeterminesTheRatioOfFocalLengths) {
 TEST_F(StereoCalibrationTest, RadialDistortionInUseStays) {
   truth_.radial = -1.5 / camera_.fx;
   StereoCalibration calibration(camera_, {}, true);
-  for (int window = 0; window < 4; ++window)
-    calibration.learn_columns(columns(calibration.errors(), 0.1), calibration.errors(), true);
+  learn_columns(calibration, 4, 0.1);
   ASSERT_NE(calibration.errors().radial, 0.0);
   truth_.radial = 0.0;
-  for (int window = 0; window < 40; ++window)
-    calibration.learn_columns(columns(calibration.errors(), 0.1), calibration.errors(), true);
+  learn_columns(calibration, 40, 0.1);
   EXPECT_NE(calibration.errors().radial, 0.0);
   EXPECT_NEAR(calibration.errors().radial * camera_.fx, -1.5 * 4.0 / 44.0, 0.1);
 }
@@ -228,8 +221,7 @@ TEST_F(StereoCalibrationTest, RadialDistortionIsFoundByMotionWhereItIsSignifican
   for (const double pixels : {-2.0, 0.1}) {
     truth_.radial = pixels / camera_.fx;
     StereoCalibration calibration(camera_, {}, true);
-    for (int window = 0; window < 4; ++window)
-      calibration.learn_columns(columns(calibration.errors(), 0.1), calibration.errors(), true);
+    learn_columns(calibration, 4, 0.1);
     if (pixels < -1.0) {
       EXPECT_NEAR(calibration.errors().radial * camera_.fx, pixels, 0.3);
       EXPECT_GT(calibration.estimate().radial_sigma, 0.0);
@@ -242,8 +234,7 @@ TEST_F(StereoCalibrationTest, RadialDistortionIsFoundByMotionWhereItIsSignifican
 TEST_F(StereoCalibrationTest, APerfectPairIsLeftAlone) {
   StereoCalibration calibration(camera_, {}, true);
   learn_rows(calibration, 30);
-  for (int window = 0; window < 30; ++window)
-    calibration.learn_columns(columns(calibration.errors(), 0.05), calibration.errors(), true);
+  learn_columns(calibration, 30, 0.05);
   EXPECT_EQ(calibration.errors(), PairErrors());
 }
 
