@@ -156,21 +156,25 @@ StereoCalibration::Solution StereoCalibration::solve() const {
       offset * offset > significant * (covariance(constant, constant) + covariance(quadratic, quadratic) -
                                        2.0 * covariance(constant, quadratic));
   // Columns of `by_free`: what each free unknown changes.
-  Eigen::MatrixXd by_free = Matrix::Identity();
-  if (!has_offset) by_free(quadratic, constant) = 1.0, by_free.col(quadratic).setZero();
-  if (!has_radial) by_free.col(radial).setZero();
-  Eigen::Index kept = 0;
-  for (Eigen::Index i = 0; i < unknowns; ++i)
-    if (by_free.col(i).any()) by_free.col(kept++) = by_free.col(i).eval();
-  by_free.conservativeResize(Eigen::NoChange, kept);
-  const Eigen::MatrixXd free_covariance =
-      (by_free.transpose() * normal * by_free).ldlt().solve(Eigen::MatrixXd::Identity(kept, kept));
+  using Free = Eigen::Matrix<double, unknowns, Eigen::Dynamic, 0, unknowns, unknowns>;
+  using FreeSquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, unknowns, unknowns>;
+  Matrix by_each = Matrix::Identity();
+  if (!has_offset) by_each(quadratic, constant) = 1.0, by_each.col(quadratic).setZero();
+  if (!has_radial) by_each.col(radial).setZero();
+  Free by_free(unknowns, unknowns - (has_offset ? 0 : 1) - (has_radial ? 0 : 1));
+  for (Eigen::Index i = 0, kept = 0; i < unknowns; ++i)
+    if (by_each.col(i).any()) by_free.col(kept++) = by_each.col(i);
+  const FreeSquare free_normal = by_free.transpose() * normal * by_free;
+  const FreeSquare free_covariance = free_normal.inverse();
   return {given_ + by_free * (free_covariance * (by_free.transpose() * gradient)),
-          has_radial && has_offset ? covariance : Matrix(by_free * free_covariance * by_free.transpose())};
+          by_free * free_covariance * by_free.transpose(), has_offset};
 }
 
 bool StereoCalibration::use_solution() {
-  const auto [found, covariance] = solve();
+  // What is left out of columns that are corrected is taken for their other errors.
+  uses_ratio_ |= uses_columns_;
+  uses_radial_ |= uses_columns_;
+  const auto [found, covariance, has_offset] = solve();
   if (!found.allFinite()) return false;
   solution_ = found;
   const Vector sigma = covariance.diagonal().cwiseSqrt();
@@ -184,7 +188,7 @@ bool StereoCalibration::use_solution() {
   use(found[radial], sigma[radial], effect_of_radial(camera_), uses_radial_, errors.radial);
   double used_product = errors.row_product();
   use(found[product], sigma[product], half_width * half_height / camera_.fx, uses_product_, used_product);
-  use_columns(found, covariance);
+  use_columns(found, covariance, has_offset);
   if (uses_product_) errors.decentring = errors.rotation.y() - used_product;
   const bool has_rows = row_normal_(pitch, pitch) > 0.0;
   const bool has_columns = column_normal_(constant, constant) + window_normal_(constant, constant) > 0.0;
@@ -202,15 +206,14 @@ bool StereoCalibration::use_solution() {
   return errors != before;
 }
 
-void StereoCalibration::use_columns(const Vector& found, const Matrix& covariance) {
+void StereoCalibration::use_columns(const Vector& found, const Matrix& covariance, bool has_offset) {
   constexpr std::array<Eigen::Index, 2> both{constant, quadratic};
   PairErrors& errors = estimate_.errors;
   const Eigen::Vector2d step = (found - unknowns_of(errors))(both);
   const Eigen::Matrix2d of_both = covariance(both, both);
   const double shift = std::sqrt(step.dot(column_area_ * step)) * camera_.fx;
   // Both are one unknown where a rotation is the only cause.
-  const bool is_rotation = !(of_both.determinant() > 1e-9 * of_both(0, 0) * of_both(1, 1));
-  const double chi_square = is_rotation ? step[0] * step[0] / of_both(0, 0) : step.dot(of_both.inverse() * step);
+  const double chi_square = has_offset ? step.dot(of_both.inverse() * step) : step[0] * step[0] / of_both(0, 0);
   const bool begins = shift > minimum_shift && chi_square > significant;
   if (!begins && !(uses_columns_ && shift > minimum_step)) return;
   uses_columns_ = true;

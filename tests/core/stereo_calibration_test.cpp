@@ -231,6 +231,26 @@ TEST_F(StereoCalibrationTest, RadialDistortionIsFoundByMotionWhereItIsSignifican
   }
 }
 
+/// Ratio and radial distortion displace columns by 0.06 and 0.05 px at the border, which alone is not worth a
+/// correction.
+TEST_F(StereoCalibrationTest, ColumnsThatAreCorrectedAreCorrectedInFull) {
+  truth_.focal_ratio = 1.0001;
+  truth_.radial = 1e-4;
+  for (const double turn : {0.0, 0.001}) {
+    truth_.rotation.y() = turn;
+    StereoCalibration calibration(camera_, {}, true);
+    learn_columns(calibration, 8, 0.01);
+    const PairErrors found = calibration.errors();
+    if (turn == 0.0) {
+      EXPECT_EQ(found, PairErrors());
+      continue;
+    }
+    EXPECT_NEAR(found.rotation.y(), turn, 3e-5);
+    EXPECT_NEAR(found.focal_ratio, 1.0001, 3e-5);
+    EXPECT_NEAR(found.radial, 1e-4, 3e-5);
+  }
+}
+
 TEST_F(StereoCalibrationTest, APerfectPairIsLeftAlone) {
   StereoCalibration calibration(camera_, {}, true);
   learn_rows(calibration, 30);

@@ -31,9 +31,10 @@ struct ColumnEstimate {
 ///
 /// An error is corrected only if it is significant and displaces points by more than `minimum_shift`, so that a perfect
 /// calibration is not changed. The displacement of most errors is that at the image border; that of rotation about y
-/// and principal point is their joint root mean square over the image. The simpler cause is preferred unless the
-/// measurements significantly contradict it: no radial distortion, and a rotation about y without an error of the
-/// principal point. Thread-safe.
+/// and principal point is their joint root mean square over the image. Once these two are corrected, so are the ratio of
+/// focal lengths and radial distortion, however small, because what is left out of the columns is taken for an error of
+/// the others. The simpler cause is preferred unless the measurements significantly contradict it: no radial distortion
+/// while columns are not corrected, and a rotation about y without an error of the principal point. Thread-safe.
 class StereoCalibration {
  public:
   static constexpr double minimum_shift = 0.1;  ///< px; the matching of images has biases up to a few hundredths
@@ -62,13 +63,14 @@ class StereoCalibration {
   struct Solution {
     Vector value;
     Matrix covariance;
+    bool has_offset;  ///< whether the principal point has an error beside a rotation about y
   };
 
   Vector unknowns_of(const PairErrors& errors) const;
   Solution solve() const;
   /// Brings the errors in use up to date; true if they have changed.
   bool use_solution();
-  void use_columns(const Vector& found, const Matrix& covariance);
+  void use_columns(const Vector& found, const Matrix& covariance, bool has_offset);
 
   Camera camera_;
   bool estimates_;
