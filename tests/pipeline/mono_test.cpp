@@ -2,6 +2,7 @@
 // One camera: threads, and a map that is lost soon after its start.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -217,7 +218,28 @@ TEST_F(MonoTest, FramesBeforeTheStartAreLocatedInTheFinishedMap) {
   }
 }
 
-/// Each round fuses points and adjusts. An interrupted run has none.
+/// The share of frames that turned as no keyframe did between two states of the map.
+double share_between_keyframes(const Trajectory (&frames)[2], const Trajectory (&keyframes)[2]) {
+  const auto turns = [](const Trajectory(&states)[2]) {
+    std::vector<Eigen::Quaterniond> result;
+    for (const TimedPose& earlier : states[0]) {
+      const auto later = std::find_if(states[1].begin(), states[1].end(),
+                                      [&](const TimedPose& pose) { return pose.timestamp == earlier.timestamp; });
+      if (later != states[1].end())
+        result.emplace_back(later->T_world_camera.linear() * earlier.T_world_camera.linear().transpose());
+    }
+    return result;
+  };
+  const std::vector<Eigen::Quaterniond> of_keyframes = turns(keyframes), of_frames = turns(frames);
+  const auto count = std::count_if(of_frames.begin(), of_frames.end(), [&](const Eigen::Quaterniond& turn) {
+    return std::none_of(of_keyframes.begin(), of_keyframes.end(),
+                        [&](const Eigen::Quaterniond& other) { return turn.angularDistance(other) < 1e-7; });
+  });
+  return static_cast<double>(count) / static_cast<double>(of_frames.size());
+}
+
+/// Each round fuses points and adjusts, and frames follow the keyframes before and after them. An interrupted run has
+/// none.
 TEST_F(MonoTest, FinalRoundsSearchThePointsOfTheWholeMapAgain) {
   struct Case {
     int rounds;
@@ -228,13 +250,20 @@ TEST_F(MonoTest, FinalRoundsSearchThePointsOfTheWholeMapAgain) {
     SCOPED_TRACE(::testing::Message() << rounds << is_interrupted);
     next_ = 0;
     truth_.clear();
-    Pipeline pipeline = make(simulator_.camera(), {}, false, {.final_rounds = rounds});
+    TrackingSettings tracking;
+    tracking.smooth_trajectory = false;  // it moves frames as well
+    Pipeline pipeline = make(simulator_.camera(), tracking, false, {.final_rounds = rounds});
     for (std::uint64_t index = 0; index < 120; ++index) feed(pipeline, index);
     if (is_interrupted) pipeline.interrupt();
+    const Trajectory frames = pipeline.trajectory(), keyframes = pipeline.keyframe_trajectory();
     pipeline.finish();
+    const double between =
+        share_between_keyframes({frames, pipeline.trajectory()}, {keyframes, pipeline.keyframe_trajectory()});
+    const bool has_rounds = rounds > 0 && !is_interrupted;
+    EXPECT_TRUE(has_rounds ? between > 0.5 : between < 0.1) << between;
     const LoopRecord record = pipeline.loop_record();
     EXPECT_TRUE(record.loops.empty());
-    EXPECT_EQ(record.adjustments.size(), rounds > 0 && !is_interrupted ? 3U : 0U);
+    EXPECT_EQ(record.adjustments.size(), has_rounds ? 3U : 0U);
     for (const FullAdjustmentSummary& adjustment : record.adjustments) EXPECT_TRUE(adjustment.applied);
     std::size_t poses = 0;
     EXPECT_LT(error(pipeline.trajectory(), 0.0, poses), 0.01);
