@@ -31,10 +31,11 @@ struct ColumnEstimate {
 ///
 /// An error is corrected only if it is significant and displaces points by more than `minimum_shift`, so that a perfect
 /// calibration is not changed. The displacement of most errors is that at the image border; that of rotation about y
-/// and principal point is their joint root mean square over the image. Once these two are corrected, so are the ratio of
-/// focal lengths and radial distortion, however small, because what is left out of the columns is taken for an error of
-/// the others. The simpler cause is preferred unless the measurements significantly contradict it: no radial distortion
-/// while columns are not corrected, and a rotation about y without an error of the principal point. Thread-safe.
+/// and principal point is their joint root mean square over the image. Once these two are corrected, so are the ratio
+/// of focal lengths and radial distortion, from 0.02 px on, because what is left out of the columns is taken for an
+/// error of the others. The simpler cause is preferred unless the measurements significantly contradict it: no radial
+/// distortion while columns are not corrected, and a rotation about y without an error of the principal point.
+/// Thread-safe.
 class StereoCalibration {
  public:
   static constexpr double minimum_shift = 0.1;  ///< px; the matching of images has biases up to a few hundredths
