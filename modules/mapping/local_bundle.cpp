@@ -64,6 +64,10 @@ LocalBundle build_bundle(const Map& map, std::vector<KeyFrameId> free, const std
   problem.camera = map.keyframe(keyframes.front()).frame.camera.get();
   problem.robust_iterations = settings.bundle_robust_iterations;
   problem.final_iterations = settings.bundle_final_iterations;
+  // Where no depth is measured, motion along a surface and a turn are told apart by little, and the cost hardly falls
+  // on the way from one to the other. What a solver's own tolerance leaves of it adds up from keyframe to keyframe.
+  constexpr double one_camera_tolerance = 1e-5;
+  if (!features_have_depth(map.sensor())) problem.function_tolerance = one_camera_tolerance;
   for (std::uint32_t p = 0; p < bundle.points.size(); ++p) {
     const MapPoint& point = map.point(bundle.points[p]);
     problem.points.push_back(point.position);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/mapping/local_mapper.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -177,6 +178,33 @@ class Flight final : public Optimizer {
  private:
   double distance_;
 };
+
+/// Notes how far each bundle adjustment is to converge.
+class Tolerances final : public Optimizer {
+ public:
+  BundleSummary optimize_bundle(BundleProblem& problem, const std::atomic<bool>&) override {
+    asked.push_back(problem.function_tolerance);
+    return {.usable = true};
+  }
+  GraphSummary optimize_pose_graph(PoseGraphProblem&) override { return {}; }
+  std::vector<double> asked;
+};
+
+TEST_F(LocalMapperTest, BundlesOfOneCameraConvergeFurther) {
+  const auto asked = [&](Sensor sensor) {
+    Tolerances tolerances;
+    map = Map();
+    map.set_sensor(sensor);
+    mapper = std::make_unique<LocalMapper>(MappingSettings{}, close_depth_factor, map, mutex, tolerances);
+    add_keyframe(frame_at(beside(0)));
+    Frame frame = frame_at(beside(0.1));
+    match(frame, 1);
+    add_keyframe(frame);
+    return tolerances.asked;
+  };
+  EXPECT_THAT(asked(Sensor::rgbd), ::testing::Each(0.0));
+  EXPECT_THAT(asked(Sensor::mono), ::testing::AllOf(::testing::Not(::testing::IsEmpty()), ::testing::Each(1e-5)));
+}
 
 TEST_F(LocalMapperTest, AKeyframeThatFewPointsHoldDoesNotFlee) {
   Flight flight;
