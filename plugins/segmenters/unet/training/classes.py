@@ -7,6 +7,9 @@ PERSON = 1
 IGNORED = 255
 #: Some furniture: whatever it is, it is no person.
 NOT_PERSON = 254
+#: A person with a probability of N %, else background: CHANCE + N, N from 0 to 100 (chances.py writes them).  train.py
+#: draws one or the other for each sample; train_gpu.py does not know them.
+CHANCE = 100
 #: In a pack: pictures without labels, which a teacher labels (train_gpu.py); nothing else is in such a label image.
 #: Either nothing is known of the picture, or boxes of people are: a pixel is in one of them, or in none.
 UNLABELLED, IN_BOX, IN_NO_BOX = 253, 252, 251

@@ -98,6 +98,36 @@ def mix(below, above, opacity):
     return ((below * (255 - weight) + above * weight + 127) // 255).astype(np.uint8)
 
 
+def with_sheets(random, picture, labels, pieces):
+    """Books and sheets of paper that lie about, seen at a slant, often at the border of the frame: parts of `pieces`
+    (pictures), paler or of one colour.  They are no people and no furniture."""
+    height, width = labels.shape
+    picture, labels = picture.copy(), labels.copy()
+    for piece in pieces:
+        cover, _ = random_view(random, piece, np.zeros(piece.shape[:2], np.uint8), (96, 128), smallest=0.15)
+        cover = random_light(random, cover, 1.5)
+        colour = cv2.cvtColor(np.uint8([[[random.integers(0, 180), random.integers(0, 256), random.integers(30, 256)]]]),
+                              cv2.COLOR_HSV2BGR)
+        share = random.uniform(0.0, 1.0) if random.random() < 0.6 else 0.0
+        cover = cv2.addWeighted(cover, 1.0 - share, np.broadcast_to(colour, cover.shape).copy(), share, 0.0)
+        centre = random.uniform(0.0, 1.0, 2)
+        if random.random() < 0.5:  # at a border
+            centre[int(random.integers(2))] = random.integers(2) + random.normal(0.0, 0.04)
+        half_width = np.exp(random.uniform(np.log(0.05), np.log(0.25))) * width
+        half = half_width * np.array([1.0, np.exp(random.normal(0.3, 0.3))])
+        angle = random.uniform(0.0, 2.0 * np.pi)
+        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        corners = half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * random.uniform(0.8, 1.2, (4, 2))
+        corners = corners @ turn.T * [1.0, random.uniform(0.4, 1.0)] + centre * [width, height]
+        outline = np.array([[0, 0], [95, 0], [95, 127], [0, 127]], np.float32)
+        matrix = cv2.getPerspectiveTransform(outline, corners.astype(np.float32))
+        sheet = cv2.warpPerspective(cover, matrix, (width, height), borderMode=cv2.BORDER_REPLICATE)
+        opacity = cv2.warpPerspective(np.full((128, 96), 255, np.uint8), matrix, (width, height))
+        picture = mix(picture, sheet, opacity)
+        labels[opacity > 127] = 0
+    return picture, labels
+
+
 def composed(random, background, people, textures, size):
     """A frame with up to four people (and sometimes things that are none) in a background; picture and labels."""
     picture, labels = random_view(random, background.picture, background.labels, size, smallest=0.45)

@@ -37,10 +37,11 @@ def random_view(random, picture, labels, size, smallest=0.3, whole=0.25):
     return np.ascontiguousarray(picture), np.ascontiguousarray(labels)
 
 
-def turned(random, picture, labels, roll=8.0):
-    """As from a camera that is not held level, by `roll` degrees (standard deviation), or that is farther away."""
+def turned(random, picture, labels, roll=8.0, zoom=(-0.5, 0.2)):
+    """As from a camera that is not held level, by `roll` degrees (standard deviation), or that is farther away or nearer
+    (logarithm of the scale)."""
     height, width = labels.shape
-    matrix = cv2.getRotationMatrix2D((width / 2, height / 2), random.normal(0.0, roll), np.exp(random.uniform(-0.5, 0.2)))
+    matrix = cv2.getRotationMatrix2D((width / 2, height / 2), random.normal(0.0, roll), np.exp(random.uniform(*zoom)))
     border = cv2.BORDER_REFLECT_101 if random.random() < 0.5 else cv2.BORDER_CONSTANT
     grey = tuple(int(value) for value in random.integers(0, 256, 3))
     return (cv2.warpAffine(picture, matrix, (width, height), flags=cv2.INTER_LINEAR, borderMode=border, borderValue=grey),
@@ -77,11 +78,11 @@ def blurred(random, picture, longest):
     return cv2.filter2D(picture, -1, kernel / kernel.sum())
 
 
-def random_camera(random, picture, blur=0.2):
-    """Light, blur (with probability `blur`) and noise of another camera."""
+def random_camera(random, picture, blur=0.2, longest=1 / 25):
+    """Light, blur (with probability `blur`, up to the share `longest` of the width) and noise of another camera."""
     picture = random_light(random, picture)
     if random.random() < blur:
-        picture = blurred(random, picture, picture.shape[1] / 25)
+        picture = blurred(random, picture, picture.shape[1] * longest)
     if random.random() < 0.25:
         noise = random.normal(0.0, random.uniform(1.0, 8.0), picture.shape)
         picture = np.clip(picture + noise, 0, 255).astype(np.uint8)

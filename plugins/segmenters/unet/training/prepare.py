@@ -79,12 +79,17 @@ def more_people(folder, source):
         yield path.stem, colour(folder / "images" / f"{path.stem}.jpg"), labels
 
 
-def in_boxes(path, shape):
-    """What a label image says when only boxes of people are known: lines of the middle, width and height, as shares of the picture."""
-    labels = np.full(shape, IN_NO_BOX, np.uint8)
+def boxes_in(path, shape):
+    """Boxes of a file (lines of the middle, width and height, as shares of the picture): left, top, right, bottom [px]."""
     for x, y, width, height in np.loadtxt(path, ndmin=2).reshape(-1, 4) if path.stat().st_size else ():
         corners = np.array([[x - width / 2, y - height / 2], [x + width / 2, y + height / 2]]) * shape[::-1]
-        (left, top), (right, bottom) = corners.round().astype(int).clip(0)
+        yield corners.round().astype(int).clip(0).reshape(-1)
+
+
+def in_boxes(path, shape):
+    """What a label image says when only boxes of people are known."""
+    labels = np.full(shape, IN_NO_BOX, np.uint8)
+    for left, top, right, bottom in boxes_in(path, shape):
         labels[top:bottom, left:right] = IN_BOX
     return labels
 

@@ -16,10 +16,10 @@ import cv2
 import numpy as np
 import torch
 
-from classes import IGNORED, IN_BOX, IN_NO_BOX, NOT_PERSON, PERSON, UNLABELLED
+from classes import CHANCE, IGNORED, IN_BOX, IN_NO_BOX, NOT_PERSON, PERSON, UNLABELLED
 from measure import found_labels
 from pack import PackError, read_pack
-from samples import to_tensor
+from samples import Samples, drawn, to_tensor
 from teacher import labels_of
 from train_gpu import student_probabilities
 from weights import in_order, load_onnx, load_weights, with_normalisation
@@ -96,6 +96,27 @@ def check_kept_blocks(folder, pack):
         raise PackError(f"--keep-blocks 3 changed {wrong[:3] or changed[:3]}; expected weights of the other blocks only")
 
 
+def check_samples(pack):
+    """Chances become people or background; a sample of nobody shows nobody, and without such pictures there is none."""
+    chances = np.array([[CHANCE, CHANCE + 20, CHANCE + 80, CHANCE + 100, 3]], np.uint8)
+    found = drawn(np.random.default_rng(1), chances)
+    if found.tolist() != [[0, 0, PERSON, PERSON, 3]]:
+        raise PackError(f"people with chances of 0, 20, 80 and 100 % and a table became {found[0].tolist()}; expected 0, 0, 1, 1, 3")
+    entries = read_pack(pack)[0]
+    for entry in entries:
+        entry.labels = np.where(entry.labels == PERSON, 0, entry.labels).astype(np.uint8)
+    samples = Samples(entries, [(64, 48)], nobody=1.0)
+    if any((samples.sample(i)[1] == PERSON).any() for i in range(8)):
+        raise PackError("samples of nobody have people in their labels; expected none")
+    for entry in entries:
+        entry.labels[0, 0] = PERSON
+    try:
+        Samples(entries, [(64, 48)], nobody=1.0)
+    except PackError:
+        return
+    raise PackError("people are in all pictures, and there are samples of nobody; expected an error")
+
+
 def computes_with_16_bits():
     """Whether this processor does, on Linux."""
     processor = pathlib.Path("/proc/cpuinfo")
@@ -131,6 +152,12 @@ def main():
     if not difference < 1e-3:
         raise PackError(f"{onnx}: scores differ by {difference} from those of weights.npz; expected the same")
     check_scores(arguments.output, onnx, model, pictures)
+    check_samples(pack)
+    run("average.py", onnx, arguments.output / "weights.npz", "--share", 0.5, "--output", arguments.output / "average.npz")
+    with torch.no_grad():
+        difference = float((load_weights(arguments.output / "average.npz")[0](pictures) - model(pictures)).abs().max())
+    if not difference < 1e-3:
+        raise PackError(f"scores of the average of the same weights differ by {difference} from theirs; expected the same")
     check_student(load_onnx(onnx), input_size)
     run("calibrate.py", pack, arguments.output / "weights.npz", "--width", 64, "--height", 48, "--every", 1)
     run("int8_labels.py", pack, onnx, "--width", 64, "--height", 48, "--pictures", 4)

@@ -187,7 +187,7 @@ def train(arguments):
 
     def batches_from(step):
         samples = Samples(training_entries, sizes, arguments.batch, arguments.seed, step * arguments.batch,
-                          arguments.whole, arguments.shares, arguments.room_roll)
+                          arguments.whole, arguments.shares, arguments.room_roll, arguments.nobody)
         return iter(torch.utils.data.DataLoader(samples, arguments.batch, num_workers=arguments.workers))
 
     training = Training(arguments, (pictures for pictures, _ in itertools.islice(batches_from(0), 24)))
@@ -300,6 +300,9 @@ def main():
     parser.add_argument("--room-roll", type=float, default=0.0, metavar="DEGREES",
                         help="standard deviation of the roll in half of the pictures of rooms, which are blurred twice as "
                              "often then; 0 = as all pictures (default: 0)")
+    parser.add_argument("--nobody", type=float, default=0.0, metavar="SHARE",
+                        help="how often a sample is a near, tilted, dark or blurred view of a picture without people; the "
+                             "others are blurred more, too (default: 0)")
     parser.add_argument("--keep-blocks", type=int, default=0, metavar="COUNT",
                         help="the stem and the first blocks of the contracting path of --size mobile, which cost most of "
                              "the time, keep their weights (default: 0)")
