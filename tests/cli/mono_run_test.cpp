@@ -41,7 +41,7 @@ TEST(MonoRun, ASimulatedRoomIsTrackedToMillimetresAfterAlignmentWithScale) {
 }
 
 /// The camera turns at a bookshelf 1.5 m away, where a turn looks almost like motion along it. Local bundle adjustment
-/// that stopped early let the scale shrink there to a half within a second (0.4 m).
+/// that stopped early let the scale shrink there to a half within a second (0.23 m).
 TEST(MonoRun, KeepsItsScaleWhereItTurnsAtAWall) {
   const test::Program program;
   const nlohmann::json summary =

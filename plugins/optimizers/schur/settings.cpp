@@ -9,12 +9,13 @@ void SchurSettings::describe(ParameterTable<SchurSettings>& table) {
   describe_pose_adjustment(table);
   table
       .add("function_tolerance", &SchurSettings::function_tolerance,
-           "relative decrease of the cost at which a bundle adjustment has converged; full adjustment has its own")
+           "relative decrease of the cost at which a bundle adjustment has converged; full adjustment, and local "
+           "adjustment of one camera, have their own")
       .range(0.0, 0.1);
   table
       .add("step_tolerance", &SchurSettings::step_tolerance,
            "largest step of a pose, in metres or radians, at which a bundle adjustment has converged; not used in full "
-           "adjustment")
+           "adjustment, and in local adjustment of one camera")
       .range(0.0, 0.01);
   table
       .add("graph_tolerance", &SchurSettings::graph_tolerance,

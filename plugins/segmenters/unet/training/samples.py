@@ -88,7 +88,7 @@ class Samples(torch.utils.data.IterableDataset):
         entries_by_source = by_source((entry.source, entry) for entry in entries)
         self.plain = Choice(entries_by_source, plain)
         self.backgrounds = Choice(entries_by_source, BACKGROUNDS)
-        empty = [entry for entry in entries if entry.source in NOBODY and shows_nobody(entry)]
+        empty = [entry for entry in entries if nobody and entry.source in NOBODY and shows_nobody(entry)]
         self.empty = Choice(by_source((entry.source, entry) for entry in empty), NOBODY)
         if nobody and not self.empty.lists:
             raise PackError(f"--nobody {nobody} needs pictures without people of {', '.join(NOBODY)}; the pack holds none")

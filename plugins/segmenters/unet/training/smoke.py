@@ -16,6 +16,7 @@ import cv2
 import numpy as np
 import torch
 
+from chances import chances
 from classes import CHANCE, IGNORED, IN_BOX, IN_NO_BOX, NOT_PERSON, PERSON, UNLABELLED
 from measure import found_labels
 from pack import PackError, read_pack
@@ -67,6 +68,21 @@ def check_boxes(folder):
         found = labels_of(probability, torch.full((1, 20, 20), hint, dtype=torch.uint8))
         if not bool((found == expected).all()):
             raise PackError(f"a person's probability of {chance} where the label says {hint} became {found[0, 10, 10]}; expected {expected}")
+
+
+def check_chances():
+    """Chances of people become labels by the boxes of people: a missed person, and one outside of all boxes, are ignored."""
+    probability = np.zeros((5, 100, 100), np.float32)
+    probability[PERSON, 10:40, 10:40] = 0.8  # in the first box
+    probability[PERSON, 60:62, 60:90] = 0.8  # a sliver of the second one
+    probability[PERSON, 10:20, 70:80] = 0.6  # in no box
+    probability[PERSON + 1, 80:90, 10:20] = 0.9
+    probability[0] = 1.0 - probability[1:].sum(0)
+    found = chances(probability, [(10, 10, 40, 40), (60, 60, 90, 90)])
+    expected = {(20, 20): CHANCE + 80, (61, 70): CHANCE + 80, (75, 75): IGNORED, (15, 75): IGNORED, (85, 15): PERSON + 1, (50, 5): 0}
+    for (row, column), label in expected.items():
+        if found[row, column] != label:
+            raise PackError(f"chances.py labelled row {row}, column {column} {found[row, column]}; expected {label}")
 
 
 def check_student(model, input_size):
@@ -173,6 +189,7 @@ def main():
         run("export.py", folder / "weights.npz", folder / "unet.onnx")
     check_kept_blocks(arguments.output, pack)
     check_boxes(arguments.output)
+    check_chances()
     run("train_gpu.py", pack, "--output", arguments.output / "gpu", "--device", "cpu", "--batch", 2, "--steps", 2, "--sizes", "64x64",
         "--furniture-dice", 0.1, "--start-from", arguments.output / "mobile" / "weights.npz")
     run("average.py", arguments.output / "mobile" / "unet.onnx", arguments.output / "gpu" / "weights.npz", pack, "--output",
