@@ -18,7 +18,7 @@ import numpy as np
 import torch
 from torch.nn import functional
 
-from classes import CHANCE, IGNORED, NOT_PERSON, PERSON
+from classes import CHANCE, IGNORED, NOT_PERSON, PERSON, is_chance
 from pack import PackError
 from photographs import resized
 from prepare import boxes_in, colour
@@ -67,7 +67,7 @@ def chances(probability, boxes, impossible=0.04):
             labels[inside][person[inside] < 0.5] = IGNORED
         outside[max(0, top - margin):bottom + margin, max(0, left - margin):right + margin] = False
     labels[outside & (person >= 0.3)] = IGNORED
-    labels[outside & (person < 0.3) & (labels >= CHANCE) & (labels <= CHANCE + 100)] = 0
+    labels[outside & (person < 0.3) & is_chance(labels)] = 0
     return labels
 
 

@@ -10,6 +10,7 @@ NOT_PERSON = 254
 #: A person with a probability of N %, else background: CHANCE + N, N from 0 to 100 (chances.py writes them).  train.py
 #: draws one or the other for each sample; train_gpu.py does not know them.
 CHANCE = 100
+
 #: In a pack: pictures without labels, which a teacher labels (train_gpu.py); nothing else is in such a label image.
 #: Either nothing is known of the picture, or boxes of people are: a pixel is in one of them, or in none.
 UNLABELLED, IN_BOX, IN_NO_BOX = 253, 252, 251
@@ -37,3 +38,8 @@ def relabelled(labels, mapping):
 def is_other_thing(labels):
     """For arrays of numpy and of PyTorch."""
     return (labels >= len(CLASSES)) & (labels < TOLD_APART)
+
+
+def is_chance(labels):
+    """Which labels are chances of a person."""
+    return (labels >= CHANCE) & (labels <= CHANCE + 100)

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import torch
 
-from classes import CHANCE, IGNORED, PERSON
+from classes import CHANCE, IGNORED, PERSON, is_chance
 from composition import composed, cutouts, with_sheets
 from pack import PackError
 from photographs import random_camera, random_view, turned
@@ -50,15 +50,14 @@ def drawn(random, labels):
     """Labels without chances: people are where the chance is above a threshold, one for the whole picture, so that an
     outline is learned where it is likely and the doubt about it as well.  Thresholds near 0 and 1 would teach what is
     improbable."""
-    chances = (labels >= CHANCE) & (labels <= CHANCE + 100)
     people = np.where(labels > CHANCE + 100.0 * random.uniform(0.25, 0.75), PERSON, 0)
-    return np.where(chances, people, labels).astype(np.uint8)
+    return np.where(is_chance(labels), people, labels).astype(np.uint8)
 
 
 def shows_nobody(entry):
     """Neither people nor chances of them, and nearly all of the picture is known."""
-    doubtful = (entry.labels == PERSON) | ((entry.labels >= CHANCE) & (entry.labels <= CHANCE + 100))
-    return not doubtful.any() and (entry.labels == IGNORED).mean() < 0.2
+    possible = (entry.labels == PERSON) | is_chance(entry.labels)
+    return not possible.any() and (entry.labels == IGNORED).mean() < 0.2
 
 
 def by_source(items):

@@ -24,7 +24,7 @@ import torch
 from torch import nn
 from torch.nn import functional
 
-from classes import CHANCE, CLASSES, IGNORED, NOT_PERSON, PERSON
+from classes import CLASSES, IGNORED, NOT_PERSON, PERSON, is_chance
 from curves import draw_curves
 from gpu_samples import Cutouts, DeviceSamples, Store
 from measure import Confusion
@@ -53,7 +53,7 @@ def student_probabilities(student, pictures, size, input_size):
 def teach(store, path, student_path, input_size, batch=32):
     """Labels of pictures without labels, where the teacher is sure, in place; with a student (an earlier network of ours), where both
     are in the mean.  Returns how many pictures there are."""
-    if any(((entry.labels >= CHANCE) & (entry.labels <= CHANCE + 100)).any() for entry in store.entries):
+    if any(is_chance(entry.labels).any() for entry in store.entries):
         raise PackError("the packs hold chances of people, which only train.py reads; pack the pictures before chances.py labels them")
     unlabelled = [i for i, entry in enumerate(store.entries) if not entry.is_labelled()]
     if not unlabelled:
