@@ -21,9 +21,10 @@ bool LocalMapRefinement::track_local_map(const TrackedView& view, const PoseSitu
   Frame& frame = context_.current;
   {
     const StageTimer timer(result.times, "local map");
+    const Eigen::Isometry3d began = frame.T_camera_world;
     context_.matcher.match_local_map(static_cast<float>(context_.settings.local_map_window), frame);
     result.inliers = context_.estimator.adjust(frame);
-    if (context_.map.sensor() == Sensor::stereo && test_local_motion(context_))
+    if (context_.map.sensor() == Sensor::stereo && test_local_motion(context_, began))
       result.inliers = context_.estimator.adjust(frame);
   }
   if (result.inliers >= context_.settings.minimum_inliers &&

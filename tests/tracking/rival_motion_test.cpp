@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "holdfast/tracking/image_depth.hpp"
@@ -46,10 +47,18 @@ class RoadAndVehicle {
       count += frame().map_points[i].valid() && on_vehicle_[i] == on_vehicle ? 1 : 0;
     return count;
   }
-  bool test_from(const Eigen::Isometry3d& pose) {
+  /// The motion of the local map, after the adjustment went from one motion to another.
+  bool test_from(const Eigen::Isometry3d& pose, std::optional<Eigen::Isometry3d> began = std::nullopt) {
     context_.current.T_camera_world = pose;
     context_.estimator.adjust(context_.current);
-    return test_local_motion(context_);
+    return test_local_motion(context_, began.value_or(pose));
+  }
+  /// How many features have no weight, on the vehicle or the road.
+  int moving(bool on_vehicle) const {
+    int count = 0;
+    for (std::size_t i = 0; i < frame().size(); ++i)
+      count += frame().static_probability[i] == 0.0F && on_vehicle_[i] == on_vehicle ? 1 : 0;
+    return count;
   }
   const Frame& frame() const { return context_.current; }
   double error() const { return (frame().T_camera_world.translation() - driven().translation()).norm(); }
@@ -74,6 +83,31 @@ TEST(RivalMotion, TheRoadWinsAgainstAVehicleWithMoreFeatures) {
   EXPECT_LT(scene.error(), 0.01);
   EXPECT_EQ(scene.matches(true), 0);
   EXPECT_EQ(scene.matches(false), road);
+}
+
+TEST(RivalMotion, WhatMovesWithTheVehicleHasNoWeight) {
+  for (const Eigen::Isometry3d& pose : {Eigen::Isometry3d::Identity(), RoadAndVehicle::driven()}) {
+    RoadAndVehicle scene(120.0, 2);
+    const int vehicle = scene.matches(true);
+    scene.test_from(pose);
+    EXPECT_GT(scene.moving(true), vehicle * 9 / 10);
+    EXPECT_EQ(scene.moving(false), 0);
+  }
+}
+
+// The vehicle is in more cells than the road, but not in half as many again.
+TEST(RivalMotion, TheMotionOfThePredictionStays) {
+  constexpr double reach = 190.0;
+  EXPECT_FALSE(RoadAndVehicle(reach).test_from(Eigen::Isometry3d::Identity()));
+  RoadAndVehicle scene(reach);
+  EXPECT_TRUE(scene.test_from(Eigen::Isometry3d::Identity(), RoadAndVehicle::driven()));
+  EXPECT_LT(scene.error(), 0.01);
+  EXPECT_EQ(scene.matches(true), 0);
+}
+
+TEST(RivalMotion, AMuchNarrowerMotionIsLeft) {
+  RoadAndVehicle scene(230.0);
+  EXPECT_FALSE(scene.test_from(Eigen::Isometry3d::Identity(), RoadAndVehicle::driven()));
 }
 
 TEST(RivalMotion, TheRoadStays) {
