@@ -56,9 +56,9 @@ double distance(const Eigen::Isometry3d& one, const Eigen::Isometry3d& other) {
 
 /// The lead that a rival needs. A vehicle does not change its speed by metres from one frame to the next, but another
 /// one may come to have more matches than the road: of two motions, the one that was predicted wins unless the other
-/// has the usual lead over it.
+/// has the usual lead over it. Without a velocity, a camera that stands is not more likely than one that drives.
 double needed_lead(const TrackingContext& context, const Eigen::Isometry3d& own, const Eigen::Isometry3d& rival) {
-  if (!context.history.has_velocity()) return usual_lead;
+  if (!context.history.has_velocity()) return distance(own, rival) < same_motion ? usual_lead : 1.0;
   const Eigen::Isometry3d predicted = context.predicted_pose();
   const bool is_predicted = distance(rival, predicted) < same_motion;
   return is_predicted && distance(own, predicted) > same_motion ? 1.0 / usual_lead : usual_lead;

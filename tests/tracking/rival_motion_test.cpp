@@ -105,6 +105,14 @@ TEST(RivalMotion, TheMotionOfThePredictionStays) {
   EXPECT_EQ(scene.matches(true), 0);
 }
 
+// The road is in more cells than the vehicle, but not in half as many again.
+TEST(RivalMotion, WithoutAVelocityTheWiderMotionWins) {
+  RoadAndVehicle scene(167.0, 4);
+  ASSERT_GT(scene.matches(true), 2 * scene.matches(false));
+  EXPECT_TRUE(scene.test_from(Eigen::Isometry3d::Identity()));
+  EXPECT_LT(scene.error(), 0.01);
+}
+
 TEST(RivalMotion, AMuchNarrowerMotionIsLeft) {
   RoadAndVehicle scene(230.0);
   EXPECT_FALSE(scene.test_from(Eigen::Isometry3d::Identity(), RoadAndVehicle::driven()));
